@@ -1,0 +1,82 @@
+#include "gi/bsdf.h"
+
+#include <stdexcept>
+#include <vector>
+
+#include "bsdf_list.h"  // made by CMakeLists.txt: includes bsdfs/*.h and defines ETENDUE_BSDFS
+
+namespace etendue {
+
+namespace {
+
+/// Calls `visit` with the BSDF of this kind: a switch that the compiler unrolls, so that each case is
+/// inlined.
+template <class... Types>
+struct List {
+    template <class Result, class Visit>
+    static Result dispatch(BsdfKind kind, Visit&& visit) {
+        Result result{};
+        BsdfKind i = 0;
+        (void)((kind == i++ ? (result = visit(Types{}), true) : false) || ...);
+        return result;
+    }
+
+    static std::vector<BsdfInfo> infos() {
+        return {{Types::name, Types::summary, Types::is_delta, Types::is_reciprocal}...};
+    }
+
+    static std::vector<NamedMaterialType> types() {
+        std::vector<NamedMaterialType> all;
+        BsdfKind kind = 0;
+        const auto add = [&](std::span<const MaterialType> types) {
+            for (const MaterialType& type : types) all.push_back({type, kind});
+            ++kind;
+        };
+        (add(Types::types), ...);
+        std::ranges::stable_sort(all, {}, [](const NamedMaterialType& t) { return t.type.order; });
+        return all;
+    }
+};
+using Bsdfs = List<ETENDUE_BSDFS>;
+
+}  // namespace
+
+vec3 bsdf_f(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi) {
+    return Bsdfs::dispatch<vec3>(kind, [&](auto bsdf) { return decltype(bsdf)::f(surface, wo, wi); });
+}
+
+float bsdf_pdf(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi) {
+    return Bsdfs::dispatch<float>(kind, [&](auto bsdf) { return decltype(bsdf)::pdf(surface, wo, wi); });
+}
+
+std::optional<BsdfSample> bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, float lobe,
+                                      const vec2& u) {
+    return Bsdfs::dispatch<std::optional<BsdfSample>>(
+        kind, [&](auto bsdf) { return decltype(bsdf)::sample(surface, wo, lobe, u); });
+}
+
+bool bsdf_is_delta(BsdfKind kind) {
+    return Bsdfs::dispatch<bool>(kind, [](auto bsdf) { return decltype(bsdf)::is_delta; });
+}
+
+std::span<const BsdfInfo> bsdfs() {
+    static const std::vector<BsdfInfo> all = Bsdfs::infos();
+    return all;
+}
+
+std::span<const NamedMaterialType> material_types() {
+    static const std::vector<NamedMaterialType> all = Bsdfs::types();
+    return all;
+}
+
+BsdfKind bsdf_of(std::string_view name) {
+    for (const NamedMaterialType& t : material_types()) {
+        if (t.type.name == name) return t.bsdf;
+    }
+    for (BsdfKind kind = 0; kind < bsdfs().size(); ++kind) {
+        if (bsdfs()[kind].name == name) return kind;
+    }
+    throw std::invalid_argument("there is no material type \"" + std::string(name) + "\"");
+}
+
+}  // namespace etendue

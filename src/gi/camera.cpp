@@ -1,0 +1,58 @@
+#include "gi/camera.h"
+
+#include <stdexcept>
+
+#include "gi/scene.h"
+
+namespace etendue {
+
+Camera::Camera(const CameraSettings& settings, uint32_t width, uint32_t height)
+    : settings_(settings), width_(width), height_(height), tan_half_fov_(std::tan(settings.fov * PI / 360)) {
+    const vec3 right = glm::cross(settings.dir, settings.up);
+    if (!(length2(right) > 0))
+        throw std::invalid_argument("the camera's dir and up must not be zero or parallel");
+    forward_ = glm::normalize(settings.dir);
+    right_ = glm::normalize(right);
+    up_ = glm::cross(right_, forward_);
+}
+
+Ray Camera::pinhole_ray(const vec2& film) const {
+    const vec2 size(width_, height_);
+    if (!settings_.perspective) {
+        const float theta = PI * film.y / size.y, phi = 2 * PI * (film.x / size.x - 0.5f);
+        const vec3 level = std::cos(phi) * forward_ + std::sin(phi) * right_;
+        return {settings_.pos, std::sin(theta) * level + std::cos(theta) * up_};
+    }
+    // Pixels are square: one scale for both axes, set by the height.
+    const float x = (2 * film.x - size.x) / size.y, y = (size.y - 2 * film.y) / size.y;
+    return {settings_.pos, glm::normalize(forward_ + tan_half_fov_ * (x * right_ + y * up_))};
+}
+
+Ray Camera::ray(const vec2& film, const vec2& u_lens) const {
+    const Ray through_centre = pinhole_ray(film);
+    if (settings_.lens_radius <= 0 || !settings_.perspective) return through_centre;
+    // All rays of a film point meet in the plane in focus, at focal_depth along dir.
+    const vec2 lens = settings_.lens_radius * uniform_disc(u_lens);
+    const vec3 offset = lens.x * right_ + lens.y * up_;
+    const vec3 to_focus =
+        through_centre.direction * (settings_.focal_depth / glm::dot(through_centre.direction, forward_));
+    return {settings_.pos + offset, glm::normalize(to_focus - offset)};
+}
+
+float auto_focus(const Scene& scene, const Camera& camera) {
+    const uint32_t w = camera.width(), h = camera.height();
+    double log_sum = 0;
+    size_t hits = 0;
+    for (uint32_t y = h * 3 / 8; y < h * 3 / 8 + std::max(h / 4, 1u); ++y) {
+        for (uint32_t x = w * 3 / 8; x < w * 3 / 8 + std::max(w / 4, 1u); ++x) {
+            const SurfaceHit hit = scene.intersect(camera.pinhole_ray(vec2(x, y) + 0.5f));
+            if (!hit.valid || !(hit.distance > 0)) continue;
+            log_sum += std::log(hit.distance);
+            ++hits;
+        }
+    }
+    return hits > 0 ? static_cast<float>(std::exp(log_sum / static_cast<double>(hits)))
+                    : camera.settings().focal_depth;
+}
+
+}  // namespace etendue

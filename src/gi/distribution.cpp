@@ -1,0 +1,55 @@
+#include "gi/distribution.h"
+
+namespace etendue {
+
+Distribution1D::Distribution1D(std::span<const double> weights) : cumulative_(weights.size() + 1, 0.0) {
+    for (size_t i = 0; i < weights.size(); ++i) cumulative_[i + 1] = cumulative_[i] + weights[i];
+    total_ = cumulative_.back();
+}
+
+Distribution1D::Choice Distribution1D::sample(float u) const {
+    const double target = u * total_;
+    // The first sum above the target ends the cell; it is strictly above, so the cell has a weight.
+    auto end = std::upper_bound(cumulative_.begin() + 1, cumulative_.end(), target);
+    while (end == cumulative_.end() || *end == *(end - 1)) --end;
+    const double from = *(end - 1), width = *end - from;
+    const auto index = static_cast<uint32_t>(end - cumulative_.begin() - 1);
+    const auto remapped = static_cast<float>((target - from) / width);
+    return {index, static_cast<float>(width / total_), std::clamp(remapped, 0.f, ONE_MINUS_EPSILON)};
+}
+
+Distribution2D::Distribution2D(std::span<const float> weights, uint32_t width, uint32_t height)
+    : cumulative_(weights.size()), width_(width), height_(height) {
+    std::vector<double> row_sums(height);
+    for (size_t y = 0; y < height; ++y) {
+        double sum = 0;
+        for (size_t x = y * width; x < (y + 1) * width; ++x) {
+            sum += weights[x];
+            cumulative_[x] = static_cast<float>(sum);
+        }
+        row_sums[y] = cumulative_[(y + 1) * width - 1];
+    }
+    rows_ = Distribution1D(row_sums);
+}
+
+Distribution2D::Choice Distribution2D::sample(const vec2& u) const {
+    const Distribution1D::Choice row = rows_.sample(u.y);
+    const float* const begin = &cumulative_[size_t{row.index} * width_];
+    const float target = u.x * begin[width_ - 1];
+    const float* end = std::upper_bound(begin, begin + width_, target);
+    while (end == begin + width_ || *end == (end == begin ? 0.f : *(end - 1))) --end;
+    const float from = end == begin ? 0.f : *(end - 1), width = *end - from;
+    const float remapped = std::clamp((target - from) / width, 0.f, ONE_MINUS_EPSILON);
+    return {static_cast<uint32_t>(end - begin),
+            row.index,
+            row.pmf * width / begin[width_ - 1],
+            {remapped, row.remapped}};
+}
+
+float Distribution2D::pmf(uint32_t x, uint32_t y) const {
+    const float* const row = &cumulative_[size_t{y} * width_];
+    if (row[width_ - 1] == 0) return 0;
+    return rows_.pmf(y) * (row[x] - (x == 0 ? 0.f : row[x - 1])) / row[width_ - 1];
+}
+
+}  // namespace etendue

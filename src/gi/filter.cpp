@@ -1,0 +1,36 @@
+#include "gi/filter.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr double RADIUS = 1.5;  // of the Blackman-Harris window, in pixels
+
+/// Integral of the window from -RADIUS to x, of its whole (Harris 1978, minimum 4-term window).
+double blackman_harris_cdf(double x) {
+    const double t = (x + RADIUS) / (2 * RADIUS);
+    const double p = 2 * M_PI;
+    const double integral = 0.35875 * t - 0.48829 * std::sin(p * t) / p +
+                            0.14128 * std::sin(2 * p * t) / (2 * p) - 0.01168 * std::sin(3 * p * t) / (3 * p);
+    return integral / 0.35875;
+}
+
+}  // namespace
+
+Filter::Filter(Kind kind) {
+    for (int i = 0; i <= CELLS; ++i) {
+        const double q = double(i) / CELLS;
+        if (kind == Kind::box) {
+            quantiles_[i] = static_cast<float>(q - 0.5);
+            continue;
+        }
+        double low = -RADIUS, high = RADIUS;
+        for (int step = 0; step < 60; ++step) {
+            const double middle = (low + high) / 2;
+            (blackman_harris_cdf(middle) < q ? low : high) = middle;
+        }
+        quantiles_[i] = static_cast<float>((low + high) / 2);
+    }
+}
+
+}  // namespace etendue

@@ -1,0 +1,57 @@
+// What a ray found: the point, its surface ready to be shaded, and the light that shines from there.
+#pragma once
+
+#include <optional>
+
+#include "gi/bsdf.h"
+#include "gi/material.h"
+#include "gi/mesh.h"
+#include "gi/ray.h"
+
+namespace etendue {
+
+class Light;
+
+/// The exercise's SurfaceInteraction. Where the ray left the scene `valid` is false, and `light` is the sky,
+/// if there is one.
+struct SurfaceHit {
+    bool valid = false;
+    bool front = false;         // wo is on the side that the geometric normal points to
+    vec3 wo{0, 0, 1};           // unit, world: back along the ray
+    float distance = INFINITE;  // from the ray's origin
+    SurfacePoint point;         // its normal is geometric and on the side of wo
+    vec2 uv{0};
+    Frame frame;  // around the shading normal, on the side of wo
+    Surface surface;
+    const Material* material = nullptr;
+    const Light* light = nullptr;
+
+    SurfaceHit() = default;
+    /// A ray's miss; `sky` may be null.
+    SurfaceHit(const Ray& ray, const Light* sky) : wo(-ray.direction), light(sky) {}
+    /// A ray's hit of a triangle at barycentrics (b1, b2); `light` is the mesh's, or null.
+    SurfaceHit(const Ray& ray, float distance, const Mesh& mesh, uint32_t triangle, const vec2& b,
+               const Material& material, const Light* light);
+
+    /// Whether light may come from here. `Le` tells how much.
+    bool is_light() const { return light != nullptr; }
+    /// Whether the BSDF is of this type, e.g. BRDF_SPECULAR: a pure Dirac delta, which no light can be
+    /// sampled for.
+    bool is_type(BrdfType type) const { return type == BRDF_SPECULAR && bsdf_is_delta(material->bsdf); }
+    /// Radiance emitted towards wo.
+    vec3 Le() const;
+
+    // The BSDF in world directions.  A direction that is above the surface for one of the shading and the
+    // geometric normal, and below for the other, carries no light: f, pdf and sample agree on that.
+    vec3 f(const vec3& wi) const;
+    float pdf(const vec3& wi) const;
+    std::optional<BsdfSample> sample(float lobe, const vec2& u) const;
+
+    /// The ray that leaves this point in a unit direction.
+    Ray ray_towards(const vec3& wi) const { return {point.offset_towards(wi), wi}; }
+
+  private:
+    void set_shading_frame(const Mesh& mesh, uint32_t triangle, const vec2& b);
+};
+
+}  // namespace etendue

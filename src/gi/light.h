@@ -1,0 +1,54 @@
+// A light of any kind.  What a kind has to offer is in light_sample.h.
+#pragma once
+
+#include <variant>
+
+#include "gi/light_sample.h"
+#include "light_list.h"  // made by CMakeLists.txt: includes lights/*.h and defines ETENDUE_LIGHTS
+
+namespace etendue {
+
+class Light {
+  public:
+    template <class Kind>
+    explicit Light(Kind kind) : kind_(std::move(kind)) {}
+
+    /// All lights of a scene, kind by kind, as each kind finds its own.
+    static std::vector<Light> find_all(const LightContext& context);
+
+    /// Empty where the point drawn cannot shine on `reference`.
+    std::optional<LightSample> sample_Li(const vec3& reference, const vec2& u) const {
+        return std::visit([&](const auto& light) { return light.sample_Li(reference, u); }, kind_);
+    }
+    /// Density with which sample_Li would have drawn the direction `-hit.wo` in which a ray from the
+    /// reference point, `hit.distance` away, found this light.
+    float pdf_Li(const SurfaceHit& hit) const {
+        return std::visit([&](const auto& light) { return light.pdf_Li(hit); }, kind_);
+    }
+    /// Radiance emitted from a hit of this light towards hit.wo.
+    vec3 Le(const SurfaceHit& hit) const {
+        return std::visit([&](const auto& light) { return light.Le(hit); }, kind_);
+    }
+    /// Radiance arriving from a direction, of an environment light.
+    vec3 Le(const vec3& direction) const {
+        return std::visit([&](const auto& light) { return light.Le(direction); }, kind_);
+    }
+    /// Luminous power in scene units (luminance of radiance x area x solid angle), by which lights are
+    /// chosen.
+    float power() const {
+        return std::visit([](const auto& light) { return light.power(); }, kind_);
+    }
+    std::string_view name() const {
+        return std::visit([](const auto& light) { return light.name; }, kind_);
+    }
+    /// The mesh that a ray hits to find this light; null for an environment light, which it finds by missing
+    /// everything.
+    const Mesh* mesh() const {
+        return std::visit([](const auto& light) { return light.mesh(); }, kind_);
+    }
+
+  private:
+    std::variant<ETENDUE_LIGHTS> kind_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,50 @@
+// Light from infinitely far away: an equirectangular image around the scene, or uniform white.
+//
+// Mapping: theta = pi v down from +Y, phi = 2 pi u, direction = (sin theta cos phi, cos theta, sin theta sin
+// phi).
+#pragma once
+
+#include "gi/distribution.h"
+#include "gi/light_sample.h"
+
+namespace etendue {
+
+/// The sky of a scene file, as arrays.
+struct Sky {
+    uint32_t width = 0, height = 0;  // 0: uniform white
+    std::vector<vec3> pixels;        // rows from the top, linear radiance
+    float intensity = 1;
+    std::optional<float>
+        radius;  // of the sphere whose cross-section counts in `power`; the scene's where empty
+};
+
+class SkyLight {
+  public:
+    static constexpr std::string_view name = "SkyLight";
+
+    /// The sky, where the scene has one.
+    static std::vector<SkyLight> find(const LightContext& context);
+
+    SkyLight(const Sky& sky, float scene_radius);
+
+    std::optional<LightSample> sample_Li(const vec3& reference, const vec2& u) const;
+    float pdf_Li(const SurfaceHit& miss) const { return pdf(-miss.wo); }
+    vec3 Le(const SurfaceHit& miss) const { return Le(-miss.wo); }
+    vec3 Le(const vec3& direction) const;
+    float power() const { return power_; }
+    const Mesh* mesh() const { return nullptr; }
+
+    /// Solid-angle density of sample_Li in a unit direction.
+    float pdf(const vec3& direction) const;
+
+  private:
+    vec3 pixel(int32_t x, int32_t y) const;
+
+    const Sky* sky_;
+    // One cell a pixel, weighted by luminance x solid angle.
+    Distribution2D cells_;
+    std::vector<float> row_cosines_;  // cos theta at the edges of the rows
+    float power_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,125 @@
+// Random numbers as a function of (seed, pixel, sample index, dimension): never of the thread or the time.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "gi/math.h"
+
+namespace etendue {
+
+/// A bijection of 64-bit words in which every input bit moves every output bit.
+inline uint64_t mix_bits(uint64_t v) {
+    v = (v ^ (v >> 31)) * 0x7fb5d329728ea185ull;
+    v = (v ^ (v >> 27)) * 0x81dadef4bc2dd44dull;
+    return v ^ (v >> 33);
+}
+
+/// One sample's stream of numbers in [0, 1).
+///
+/// `sobol`: the first two dimensions of Sobol's sequence, its points shuffled and its values scrambled in
+/// Owen's way by hashing, afresh for every pair of dimensions and every pixel (Burley 2020, "Practical
+/// Hash-based Owen Scrambling"). Any power of two of consecutive samples is stratified in every such pair.
+/// `independent`: PCG (O'Neill 2014, XSH-RR), reseeded at every vertex so that it is indexed by dimension
+/// too.
+class Sampler {
+  public:
+    enum class Kind : uint8_t { sobol, independent };
+    static constexpr std::array<std::string_view, 2> names{"sobol", "independent"};
+
+    Sampler(Kind kind, uint64_t seed) : kind_(kind), seed_(mix_bits(seed + 0x9e3779b97f4a7c15ull)) {}
+
+    /// Begins sample `index` of a pixel at dimension 0.
+    void start(uint32_t pixel, uint64_t index) {
+        // A Sobol index has 32 bits; what is above selects another scrambling, an independent replicate.
+        const uint64_t replicate = kind_ == Kind::sobol ? index >> 32 : index;
+        key_ = mix_bits(mix_bits(seed_ ^ pixel) + replicate);
+        reversed_index_ = reverse_bits(static_cast<uint32_t>(index));
+        start_vertex(0);
+    }
+
+    /// Jumps to the dimensions of the path's vertex `depth` (0: the camera), so that what one vertex draws
+    /// does not shift the dimensions of the next, whatever branches it took.
+    void start_vertex(uint32_t depth) {
+        dimension_ = depth * DRAWS_PER_VERTEX;
+        if (kind_ == Kind::independent) state_ = mix_bits(key_ + dimension_);
+    }
+
+    float next_1d() {
+        if (kind_ == Kind::independent) return to_float(pcg());
+        const uint64_t h = next_hash();
+        return to_float(reverse_bits(scramble(shuffled_index(h), high(h))));
+    }
+
+    vec2 next_2d() {
+        if (kind_ == Kind::independent) {
+            const float x = to_float(pcg());
+            return {x, to_float(pcg())};
+        }
+        const uint64_t h = next_hash();
+        const uint32_t index = shuffled_index(h);
+        // Sobol's first coordinate is the index with its bits reversed, so the index is that coordinate
+        // reversed.
+        const uint32_t x = scramble(index, high(h));
+        const uint32_t y = scramble(second_coordinate_reversed(index), low(mix_bits(h)));
+        return {to_float(reverse_bits(x)), to_float(reverse_bits(y))};
+    }
+
+  private:
+    static constexpr uint32_t DRAWS_PER_VERTEX = 8;
+
+    static uint32_t low(uint64_t h) { return static_cast<uint32_t>(h); }
+    static uint32_t high(uint64_t h) { return static_cast<uint32_t>(h >> 32); }
+    static float to_float(uint32_t x) {
+        return std::min(static_cast<float>(x) * 0x1p-32f, ONE_MINUS_EPSILON);
+    }
+
+    static uint32_t reverse_bits(uint32_t x) {
+        x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+        x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+        x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+        return __builtin_bswap32(x);
+    }
+
+    /// Owen's scrambling of a coordinate whose bits are reversed: a hash in which every bit depends on the
+    /// bits below it alone (Laine and Karras 2011; constants of Vegdahl 2021, "Building a Better LK Hash").
+    static uint32_t scramble(uint32_t x, uint32_t seed) {
+        x ^= x * 0x3d20adeau;
+        x += seed;
+        x *= (seed >> 16) | 1;
+        x ^= x * 0x05526c56u;
+        x ^= x * 0x53a22864u;
+        return x;
+    }
+
+    uint32_t shuffled_index(uint64_t h) const { return reverse_bits(scramble(reversed_index_, low(h))); }
+
+    /// Sobol's second coordinate with its bits reversed.  Its generator matrix is Pascal's triangle modulo 2:
+    /// bit j is the parity of those index bits k whose binary digits cover j's (Lucas), a sum over supersets
+    /// that takes five steps.
+    static uint32_t second_coordinate_reversed(uint32_t x) {
+        x ^= (x >> 1) & 0x55555555u;
+        x ^= (x >> 2) & 0x33333333u;
+        x ^= (x >> 4) & 0x0f0f0f0fu;
+        x ^= (x >> 8) & 0x00ff00ffu;
+        x ^= (x >> 16) & 0x0000ffffu;
+        return x;
+    }
+
+    uint64_t next_hash() { return mix_bits(key_ ^ (uint64_t{++dimension_} << 32)); }
+
+    uint32_t pcg() {
+        const uint64_t old = state_;
+        state_ = old * 6364136223846793005ull + 1442695040888963407ull;
+        const uint32_t word = static_cast<uint32_t>(((old >> 18) ^ old) >> 27);
+        const uint32_t turn = static_cast<uint32_t>(old >> 59);
+        return (word >> turn) | (word << (-turn & 31));
+    }
+
+    Kind kind_;
+    uint32_t dimension_ = 0;
+    uint32_t reversed_index_ = 0;
+    uint64_t seed_, key_ = 0, state_ = 0;
+};
+
+}  // namespace etendue

@@ -1,0 +1,180 @@
+#include "gi/scene.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <atomic>
+#include <stdexcept>
+
+namespace etendue {
+
+namespace {
+
+/// A hit of a surface that is cut out there is no hit.
+void cutout_filter(const RTCFilterFunctionNArguments* args) {
+    const auto* const mesh_and_material =
+        static_cast<const std::pair<const Mesh*, const Material*>*>(args->geometryUserPtr);
+    const auto& [mesh, material] = *mesh_and_material;
+    for (uint32_t i = 0; i < args->N; ++i) {
+        if (args->valid[i] == 0) continue;
+        const vec2 b(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
+        const uint32_t triangle = RTCHitN_primID(args->hit, args->N, i);
+        if (material->is_cut_out(mesh->uv(triangle, b))) args->valid[i] = 0;
+    }
+}
+
+RTCRay to_embree(const Ray& ray) {
+    RTCRay r{};
+    r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
+    r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
+    r.tnear = 0;
+    r.tfar = ray.t_max;
+    r.mask = ~0u;
+    return r;
+}
+
+}  // namespace
+
+struct Scene::Accelerator {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::atomic<ssize_t> bytes = 0;
+    std::vector<std::pair<const Mesh*, const Material*>> cut_outs;  // what the filters see
+
+    explicit Accelerator(const Data& data) : device(rtcNewDevice(nullptr)) {
+        if (!device) throw std::runtime_error("Embree found no way to run on this processor");
+        rtcSetDeviceMemoryMonitorFunction(device, &count_bytes, this);
+        scene = rtcNewScene(device);
+        // Robust: no ray slips between two triangles that share an edge.
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+        cut_outs.reserve(data.meshes.size());
+        for (const Mesh& mesh : data.meshes) add(mesh, data.materials[mesh.material]);
+        rtcCommitScene(scene);
+        if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
+            release();
+            throw std::runtime_error("Embree could not build its hierarchy over the scene: out of memory?");
+        }
+    }
+
+    Accelerator(const Accelerator&) = delete;
+    Accelerator& operator=(const Accelerator&) = delete;
+    ~Accelerator() { release(); }
+
+    void release() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+
+    /// One geometry a mesh, its id the mesh's index, over the mesh's own arrays.
+    void add(const Mesh& mesh, const Material& material) {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh.vertices.data(), 0, sizeof(vec3), mesh.vertex_count());
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                   mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
+                                   mesh.triangles.size());
+        if (material.cutout_texture) {
+            rtcSetGeometryUserData(geometry, &cut_outs.emplace_back(&mesh, &material));
+            rtcSetGeometryIntersectFilterFunction(geometry, &cutout_filter);
+            rtcSetGeometryOccludedFilterFunction(geometry, &cutout_filter);
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+    }
+
+    static bool count_bytes(void* self, ssize_t bytes, bool) {
+        static_cast<Accelerator*>(self)->bytes += bytes;
+        return true;
+    }
+};
+
+Scene::Scene(Data data) : data_(std::move(data)), mesh_lights_(data_.meshes.size(), nullptr) {
+    for (const Mesh& mesh : data_.meshes) {
+        for (size_t i = 0; i < mesh.vertex_count(); ++i) {
+            lower_ = glm::min(lower_, mesh.vertices[i]);
+            upper_ = glm::max(upper_, mesh.vertices[i]);
+        }
+    }
+    accelerator_ = std::make_unique<Accelerator>(data_);
+    const float radius = lower_.x <= upper_.x ? glm::length(upper_ - lower_) / 2 : 1.f;
+    lights_ = Light::find_all({data_.meshes, data_.materials, data_.sky ? &*data_.sky : nullptr, radius});
+    for (const Light& light : lights_) {
+        if (light.mesh()) {
+            mesh_lights_[light.mesh() - data_.meshes.data()] = &light;
+        } else {
+            sky_ = &light;
+        }
+    }
+    light_sampler_ = LightSampler(lights_);
+}
+
+Scene::~Scene() = default;
+
+SurfaceHit Scene::intersect(const Ray& ray) const {
+    RTCRayHit query{};
+    query.ray = to_embree(ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    rtcIntersect1(accelerator_->scene, &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(accelerator_->scene, &context, &query);
+#endif
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {ray, sky_};
+    const Mesh& mesh = data_.meshes[query.hit.geomID];
+    const vec2 barycentrics(query.hit.u, query.hit.v);
+    return {ray,
+            query.ray.tfar,
+            mesh,
+            query.hit.primID,
+            barycentrics,
+            data_.materials[mesh.material],
+            mesh_lights_[query.hit.geomID]};
+}
+
+bool Scene::occluded(const Ray& ray) const {
+    RTCRay query = to_embree(ray);
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(accelerator_->scene, &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(accelerator_->scene, &context, &query);
+#endif
+    return query.tfar < 0;
+}
+
+size_t Scene::triangle_count() const {
+    size_t count = 0;
+    for (const Mesh& mesh : data_.meshes) count += mesh.triangles.size();
+    return count;
+}
+
+size_t Scene::memory_bytes() const {
+    size_t bytes = static_cast<size_t>(accelerator_->bytes.load());
+    for (const Mesh& mesh : data_.meshes) {
+        bytes += (mesh.vertices.size() + mesh.normals.size()) * sizeof(vec3) +
+                 mesh.uvs.size() * sizeof(vec2) + mesh.triangles.size() * sizeof(mesh.triangles[0]);
+    }
+    for (const auto& texture : data_.textures) bytes += texture->memory_bytes();
+    if (data_.sky) bytes += data_.sky->pixels.size() * (sizeof(vec3) + sizeof(float));
+    return bytes;
+}
+
+std::string embree_version() { return RTC_VERSION_STRING; }
+
+Ray shadow_ray(const SurfaceHit& hit, const LightSample& sample) {
+    const vec3 origin = hit.point.offset_towards(sample.wi);
+    if (sample.infinite) return {origin, sample.wi, INFINITE};
+    // Ends short of the light by the error of the point there, and by the rounding of the difference itself.
+    const vec3 target = sample.point.offset_towards(-sample.wi);
+    return {origin, target - origin, 1 - 4 * std::numeric_limits<float>::epsilon()};
+}
+
+}  // namespace etendue

@@ -1,0 +1,66 @@
+// All there is to light: geometry for rays to find, materials, and lights to choose from.
+#pragma once
+
+#include <memory>
+
+#include "gi/light.h"
+#include "gi/light_sampler.h"
+
+namespace etendue {
+
+class Scene {
+  public:
+    struct Data {
+        std::vector<Mesh> meshes;
+        std::vector<Material> materials;
+        std::vector<std::shared_ptr<const Texture>> textures;  // referred to by the materials
+        std::optional<Sky> sky;
+    };
+
+    /// Builds the acceleration structure on all cores. Throws std::runtime_error where Embree cannot.
+    explicit Scene(Data data);
+    ~Scene();
+
+    /// What the ray finds first.
+    SurfaceHit intersect(const Ray& ray) const;
+    /// Whether anything is between two points, or along the ray before t_max.
+    bool occluded(const Ray& ray) const;
+
+    /// A light with probability proportional to its power; empty in a scene without light.
+    std::optional<LightSampler::Choice> sample_light_source(float u) const {
+        return light_sampler_.sample(u);
+    }
+    /// Probability with which sample_light_source chooses the light.
+    float light_source_pdf(const Light* light) const { return light_sampler_.pmf(light); }
+
+    const std::vector<Light>& lights() const { return lights_; }
+    const std::vector<Mesh>& meshes() const { return data_.meshes; }
+    const std::vector<Material>& materials() const { return data_.materials; }
+    size_t triangle_count() const;
+    /// Bytes of arrays, textures and the acceleration structure.
+    size_t memory_bytes() const;
+
+    /// Axis-aligned bounds of all vertices; lower > upper in an empty scene.
+    const vec3& lower() const { return lower_; }
+    const vec3& upper() const { return upper_; }
+
+  private:
+    struct Accelerator;
+
+    Data data_;
+    vec3 lower_{INFINITE}, upper_{-INFINITE};
+    std::unique_ptr<Accelerator> accelerator_;
+    std::vector<Light> lights_;
+    std::vector<const Light*> mesh_lights_;  // one a mesh, null where it does not emit
+    const Light* sky_ = nullptr;
+    LightSampler light_sampler_;
+};
+
+/// Version of the library that traces rays.
+std::string embree_version();
+
+/// The ray that asks whether a light sample is visible: between the two surfaces, each offset by its own
+/// error.
+Ray shadow_ray(const SurfaceHit& hit, const LightSample& sample);
+
+}  // namespace etendue
