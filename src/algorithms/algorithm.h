@@ -1,0 +1,98 @@
+// The contract of an estimator, and the registry that makes one file in this folder enough to add another.
+//
+// An estimator answers one question: how much light arrives along a camera ray, on average over many calls.
+// Path length counts edges: max_cam_path_length = n takes in light that came over at most n rays, for every
+// estimator.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gi/sampler.h"
+#include "gi/scene.h"
+
+namespace etendue {
+
+using ParameterValue = std::variant<bool, int, double, std::string>;
+
+/// A setting of an estimator: a key of the scene file, checked there, and a control in the viewer.
+struct Parameter {
+    std::string name, summary;
+    ParameterValue default_value;
+    double minimum = 0, maximum = 0;   // of numbers
+    std::vector<std::string> choices;  // of strings
+};
+
+/// Values by name; what is not given has the default of its declaration.
+class Parameters {
+  public:
+    Parameters(std::vector<Parameter> declared, const std::map<std::string, ParameterValue>& given);
+
+    template <class T>
+    T get(const std::string& name) const {
+        return std::get<T>(values_.at(name));
+    }
+
+  private:
+    std::map<std::string, ParameterValue> values_;
+};
+
+/// What an estimator works with: the scene, the sample's random numbers, and counters. One a thread.
+class Context {
+  public:
+    Context(const Scene& scene, Sampler sampler) : scene(scene), sampler(sampler) {}
+
+    SurfaceHit intersect(const Ray& ray) {
+        ++rays;
+        return scene.intersect(ray);
+    }
+    bool visible(const SurfaceHit& hit, const LightSample& sample) {
+        ++rays;
+        return !scene.occluded(shadow_ray(hit, sample));
+    }
+
+    const Scene& scene;
+    Sampler sampler;
+    uint64_t rays = 0;
+};
+
+class Algorithm {
+  public:
+    virtual ~Algorithm() = default;
+    /// One unbiased estimate of the radiance along a camera ray. Called by many threads at once.
+    virtual vec3 radiance(Context& context, Ray ray) const = 0;
+};
+
+struct AlgorithmInfo {
+    std::string name, summary;
+    std::vector<Parameter> parameters;
+    std::function<std::unique_ptr<Algorithm>(const Parameters&)> make;
+};
+
+/// All estimators by name, in alphabetical order.
+const std::map<std::string, AlgorithmInfo>& algorithms();
+
+/// Throws std::invalid_argument where there is no such estimator or parameter, or a value does not fit.
+std::unique_ptr<Algorithm> make_algorithm(const std::string& name,
+                                          const std::map<std::string, ParameterValue>& given);
+
+/// A global of this type in an estimator's file registers it:
+///     const Register<Pathtracer> registered{"Pathtracer", "what it is", {path_length_parameter()}};
+void register_algorithm(AlgorithmInfo info);
+template <class T>
+struct Register {
+    Register(std::string name, std::string summary, std::vector<Parameter> parameters) {
+        register_algorithm(
+            {std::move(name), std::move(summary), std::move(parameters),
+             [](const Parameters& p) -> std::unique_ptr<Algorithm> { return std::make_unique<T>(p); }});
+    }
+};
+
+// Settings that several estimators share.
+Parameter max_path_length_parameter();
+
+}  // namespace etendue

@@ -1,0 +1,41 @@
+// Direct illumination by light sampling: lamps that are seen, and what one sampled light adds to the surface
+// that is seen.
+//
+// Light over at most two edges.  At delta surfaces, where no light can be sampled, the second edge is the
+// mirrored or refracted ray, so that the picture is that of every other estimator with a longest path of two.
+#include "algorithms/direct_light.h"
+
+namespace etendue {
+
+namespace {
+
+class DirectIllumination : public Algorithm {
+  public:
+    explicit DirectIllumination(const Parameters& parameters)
+        : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")) {}
+
+    vec3 radiance(Context& context, Ray ray) const override {
+        const SurfaceHit hit = context.intersect(ray);
+        const vec3 emitted = hit.Le();
+        if (!hit.valid || MAX_CAM_PATH_LENGTH < 2) return emitted;
+
+        context.sampler.start_vertex(1);
+        if (!hit.is_type(BRDF_SPECULAR)) return emitted + sample_direct_light(context, hit, Mis::none);
+
+        const float lobe = context.sampler.next_1d();
+        const auto bounce = hit.sample(lobe, context.sampler.next_2d());
+        if (!bounce) return emitted;
+        return emitted + bounce->weight * context.intersect(hit.ray_towards(bounce->wi)).Le();
+    }
+
+  private:
+    const int MAX_CAM_PATH_LENGTH;
+};
+
+const Register<DirectIllumination> registered{"DirectIllumination",
+                                              "direct light by light sampling, paths of at most two edges",
+                                              {max_path_length_parameter()}};
+
+}  // namespace
+
+}  // namespace etendue

@@ -1,0 +1,69 @@
+// Next event estimation at one vertex: light sampled on purpose, and the weight that it shares with light
+// found by chance.
+#pragma once
+
+#include "algorithms/algorithm.h"
+
+namespace etendue {
+
+/// How light sampling and BSDF sampling share the light that both can find (assignment 4).
+enum class Mis { power, balance, none };
+
+inline Mis mis_of(const Parameters& parameters) {
+    const auto name = parameters.get<std::string>("mis");
+    return name == "power" ? Mis::power : name == "balance" ? Mis::balance : Mis::none;
+}
+
+inline Parameter mis_parameter() {
+    return {"mis",
+            "how light sampling and BSDF sampling are combined; none: light sampling alone",
+            std::string("power"),
+            0,
+            0,
+            {"power", "balance", "none"}};
+}
+
+/// Weight of light sampling for a light sample: 1 without MIS.
+inline float light_sampling_weight(Mis mis, float light_pdf, float bsdf_pdf) {
+    switch (mis) {
+        case Mis::power:
+            return power_heuristic(light_pdf, bsdf_pdf);
+        case Mis::balance:
+            return balance_heuristic(light_pdf, bsdf_pdf);
+        case Mis::none:
+            return 1;
+    }
+    return 1;
+}
+
+/// Weight of BSDF sampling for a light that its ray hit; the counterpart of the above, so 0 without MIS.
+/// A light that could not have been sampled from there has light_pdf 0 and counts in full.
+inline float bsdf_sampling_weight(Mis mis, float bsdf_pdf, float light_pdf) {
+    switch (mis) {
+        case Mis::power:
+            return power_heuristic(bsdf_pdf, light_pdf);
+        case Mis::balance:
+            return balance_heuristic(bsdf_pdf, light_pdf);
+        case Mis::none:
+            return light_pdf > 0 ? 0 : 1;
+    }
+    return 1;
+}
+
+/// The light of one sampled light over one shadow ray, weighted; 0 at delta surfaces, where it could never be
+/// seen.
+inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, Mis mis) {
+    if (hit.is_type(BRDF_SPECULAR)) return vec3(0);
+    const float u_light = context.sampler.next_1d();
+    const vec2 u_point = context.sampler.next_2d();
+    const auto choice = context.scene.sample_light_source(u_light);
+    if (!choice) return vec3(0);
+    const auto sample = choice->light->sample_Li(hit.point.position, u_point);
+    if (!sample) return vec3(0);
+    const vec3 reflected = hit.f(sample->wi) * std::abs(glm::dot(sample->wi, hit.frame.n)) * sample->radiance;
+    if (is_black(reflected) || !context.visible(hit, *sample)) return vec3(0);
+    const float light_pdf = choice->pmf * sample->pdf;
+    return reflected * (light_sampling_weight(mis, light_pdf, hit.pdf(sample->wi)) / light_pdf);
+}
+
+}  // namespace etendue

@@ -1,0 +1,81 @@
+// Path tracing with next event estimation (assignment 2) and multiple importance sampling (assignment 4).
+//
+// Every vertex samples a light on purpose and connects to it over a shadow ray; the path goes on by the BSDF
+// and may find a light by chance.  Light that both can find is shared by weights that add up to 1 ("mis":
+// power or balance heuristic), or left to light sampling ("mis": none).  Light that only chance can find,
+// straight from the camera or after a delta bounce, counts in full.
+#include "algorithms/direct_light.h"
+#include "algorithms/russian_roulette.h"
+
+namespace etendue {
+
+namespace {
+
+class Pathtracer : public Algorithm {
+  public:
+    explicit Pathtracer(const Parameters& parameters)
+        : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")),
+          mis_(mis_of(parameters)),
+          roulette_(parameters) {}
+
+    vec3 radiance(Context& context, Ray ray) const override {
+        vec3 radiance(0), throughput(1);
+        float eta_scale = 1;
+        // How the ray was chosen: its solid-angle pdf, or by no density at all.
+        float prev_pdf = 0;
+        bool prev_delta = true;
+        for (int depth = 1;; ++depth) {
+            const SurfaceHit hit = context.intersect(ray);
+            // Light found by chance, against the pdf of having sampled it on purpose from the vertex before.
+            if (hit.is_light()) {
+                const float weight =
+                    prev_delta ? 1 : bsdf_sampling_weight(mis_, prev_pdf, light_pdf(context, hit));
+                radiance += throughput * weight * hit.Le();
+            }
+            if (!hit.valid || depth == MAX_CAM_PATH_LENGTH) break;
+
+            // Light sampled on purpose, one edge further.
+            context.sampler.start_vertex(depth);
+            radiance += throughput * sample_direct_light(context, hit, mis_);
+
+            // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
+            const float lobe = context.sampler.next_1d();
+            const auto bounce = hit.sample(lobe, context.sampler.next_2d());
+            if (!bounce) break;
+            throughput *= bounce->weight;
+            eta_scale *= bounce->eta2;
+            if (is_black(throughput)) break;
+
+            if (!roulette_.survives(context, throughput, eta_scale, depth)) break;
+            prev_pdf = bounce->pdf;
+            prev_delta = bounce->is_delta();
+            ray = hit.ray_towards(bounce->wi);
+        }
+        return radiance;
+    }
+
+    static std::vector<Parameter> parameters() {
+        auto all = RussianRoulette::parameters();
+        all.push_back(max_path_length_parameter());
+        all.push_back(mis_parameter());
+        return all;
+    }
+
+  private:
+    static float light_pdf(const Context& context, const SurfaceHit& hit) {
+        return context.scene.light_source_pdf(hit.light) * hit.light->pdf_Li(hit);
+    }
+
+    const int MAX_CAM_PATH_LENGTH;
+    const Mis mis_;
+    const RussianRoulette roulette_;
+};
+
+const Register<Pathtracer> registered{
+    "Pathtracer",
+    "path tracing with next event estimation and multiple importance sampling (assignments 2 to 4)",
+    Pathtracer::parameters()};
+
+}  // namespace
+
+}  // namespace etendue
