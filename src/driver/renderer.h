@@ -1,0 +1,76 @@
+// Who renders what when: passes over tiles on all threads, with progress, cancelling and a count of what went
+// wrong.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+
+#include "algorithms/algorithm.h"
+#include "gi/camera.h"
+#include "gi/film.h"
+#include "gi/filter.h"
+
+namespace etendue {
+
+class Renderer {
+  public:
+    struct Settings {
+        Sampler::Kind sampler = Sampler::Kind::sobol;
+        Filter::Kind filter = Filter::Kind::blackman_harris;
+        uint64_t seed = 0;
+        int threads = 0;  // 0: all
+    };
+    /// A sample whose radiance was not a finite number >= 0; it is not in the film's sums.
+    struct InvalidSample {
+        uint32_t x, y;
+        uint64_t sample;
+    };
+
+    /// The scene must outlive the renderer.
+    Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Algorithm> algorithm,
+             const Settings& settings);
+
+    /// Brings every pixel to `samples` samples, going on from those it has. False where it returned before
+    /// that: cancelled, or `time_limit` seconds had passed, with every pixel at the number of samples that
+    /// its count says. The limit does not stop the first sample of each pixel.
+    bool render(uint64_t samples, double time_limit = INFINITE);
+
+    /// Makes the running `render`, or else the next, return within a few milliseconds. From any thread.
+    void cancel() { stop_ = true; }
+
+    /// Of the running or last `render`: pixels x samples that it was asked for and has.
+    uint64_t samples_done() const { return samples_done_; }
+
+    const Film& film() const { return film_; }
+    uint64_t rays() const { return rays_; }
+    uint64_t invalid_count() const { return invalid_count_; }
+    /// The first of them, at most MAX_INVALID_LISTED.
+    std::vector<InvalidSample> invalid_samples() const;
+    double seconds() const { return seconds_; }
+    int threads() const { return threads_; }
+
+    static constexpr size_t MAX_INVALID_LISTED = 1000;
+
+  private:
+    void render_tile(uint32_t tile, uint64_t samples);
+    /// Returns how many samples it took.
+    uint64_t render_pixel(Context& context, uint32_t x, uint32_t y, uint64_t samples);
+    void report_invalid(const InvalidSample& sample);
+
+    const Scene& scene_;
+    Camera camera_;
+    std::unique_ptr<Algorithm> algorithm_;
+    Filter filter_;
+    Settings settings_;
+    int threads_;
+    Film film_;
+    uint32_t tiles_x_, tiles_y_;
+    std::atomic<bool> stop_ = false;
+    std::atomic<uint64_t> rays_ = 0, samples_done_ = 0, invalid_count_ = 0;
+    double seconds_ = 0;
+    mutable std::mutex invalid_mutex_;
+    std::vector<InvalidSample> invalid_;
+};
+
+}  // namespace etendue
