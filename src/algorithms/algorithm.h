@@ -68,8 +68,12 @@ class Algorithm {
 };
 
 struct AlgorithmInfo {
+    // Longest path that an estimator takes in, whatever max_cam_path_length says.
+    static constexpr int UNLIMITED = std::numeric_limits<int>::max(), DIRECT = 2, NO_TRANSPORT = 0;
+
     std::string name, summary;
     std::vector<Parameter> parameters;
+    int longest_path;
     std::function<std::unique_ptr<Algorithm>(const Parameters&)> make;
 };
 
@@ -81,14 +85,16 @@ std::unique_ptr<Algorithm> make_algorithm(const std::string& name,
                                           const std::map<std::string, ParameterValue>& given);
 
 /// A global of this type in an estimator's file registers it:
-///     const Register<Pathtracer> registered{"Pathtracer", "what it is", {path_length_parameter()}};
+///     const Register<Pathtracer> registered{"Pathtracer", "what it is", {max_path_length_parameter()}};
 void register_algorithm(AlgorithmInfo info);
 template <class T>
 struct Register {
-    Register(std::string name, std::string summary, std::vector<Parameter> parameters) {
-        register_algorithm(
-            {std::move(name), std::move(summary), std::move(parameters),
-             [](const Parameters& p) -> std::unique_ptr<Algorithm> { return std::make_unique<T>(p); }});
+    Register(std::string name, std::string summary, std::vector<Parameter> parameters,
+             int longest_path = AlgorithmInfo::UNLIMITED) {
+        const auto make = [](const Parameters& p) -> std::unique_ptr<Algorithm> {
+            return std::make_unique<T>(p);
+        };
+        register_algorithm({std::move(name), std::move(summary), std::move(parameters), longest_path, make});
     }
 };
 

@@ -42,7 +42,8 @@ const Register<BRDFImportance> registered{
     "BRDFImportance",
     "direct light by uniform or BSDF-sampled directions, paths of at most two edges",
     {max_path_length_parameter(),
-     {"sampling", "how BRDFImportance draws directions", std::string("bsdf"), 0, 0, {"bsdf", "uniform"}}}};
+     {"sampling", "how BRDFImportance draws directions", std::string("bsdf"), 0, 0, {"bsdf", "uniform"}}},
+    AlgorithmInfo::DIRECT};
 
 }  // namespace
 

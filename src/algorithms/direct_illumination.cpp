@@ -34,7 +34,8 @@ class DirectIllumination : public Algorithm {
 
 const Register<DirectIllumination> registered{"DirectIllumination",
                                               "direct light by light sampling, paths of at most two edges",
-                                              {max_path_length_parameter()}};
+                                              {max_path_length_parameter()},
+                                              AlgorithmInfo::DIRECT};
 
 }  // namespace
 

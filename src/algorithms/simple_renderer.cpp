@@ -19,7 +19,7 @@ class SimpleRenderer : public Algorithm {
 };
 
 const Register<SimpleRenderer> registered{
-    "SimpleRenderer", "albedo under a lamp at the eye, no light transport", {}};
+    "SimpleRenderer", "albedo under a lamp at the eye, no light transport", {}, AlgorithmInfo::NO_TRANSPORT};
 
 }  // namespace
 
