@@ -1,0 +1,393 @@
+"""
+The compiled core of Étendue: scenes, estimators and the renderer. It opens no file and prints nothing.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+
+class ParameterInfo:
+    """A setting of an estimator: a top-level key of the scene file."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def summary(self) -> str: ...
+
+    @property
+    def kind(self) -> str:
+        """"bool", "int", "float" or "choice"."""
+
+    @property
+    def default(self) -> bool | int | float | str: ...
+
+    @property
+    def choices(self) -> list[str]:
+        """The values of a choice."""
+
+    @property
+    def minimum(self) -> float:
+        """Of a number."""
+
+    @property
+    def maximum(self) -> float:
+        """Of a number."""
+
+class AlgorithmInfo:
+    """An estimator."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def summary(self) -> str: ...
+
+    @property
+    def parameters(self) -> list[ParameterInfo]: ...
+
+    @property
+    def longest_path(self) -> int | None:
+        """
+        Edges of the longest path it takes in, whatever max_cam_path_length says: None for no limit, 2 for direct
+        light, 0 where it pictures something else than light transport.
+        """
+
+def algorithms() -> list[AlgorithmInfo]:
+    """All estimators, by name."""
+
+class MaterialType:
+    """What the name of a material makes of it."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def summary(self) -> str: ...
+
+    @property
+    def bsdf(self) -> str:
+        """Name of the BSDF."""
+
+    @property
+    def matches(self) -> list[str]:
+        """
+        Lower-case texts, any of which the name may contain; none: every name matches.
+        """
+
+    @property
+    def ior(self) -> float | None:
+        """None: the mesh's own."""
+
+    @property
+    def absorb(self) -> float | None: ...
+
+    @property
+    def roughness(self) -> float | None: ...
+
+    @property
+    def emissive_strength(self) -> float | None:
+        """Where the mesh gives none."""
+
+    @property
+    def albedo(self) -> list[float] | None: ...
+
+def material_types() -> list[MaterialType]:
+    """
+    All material types, in the order in which names are tried against them; the first match decides.
+    """
+
+def samplers() -> list[str]:
+    """Names of the samplers, the default first."""
+
+def filters() -> list[str]:
+    """Names of the pixel filters, the default first."""
+
+def versions() -> list[tuple[str, str]]:
+    """What the core was built with and runs on, as (name, version)."""
+
+class Texture:
+    """An image on a surface: bilinear, repeating."""
+
+    def __init__(self, pixels: Annotated[NDArray, dict(order='C', device='cpu', writable=False)], srgb: bool) -> None:
+        """
+        pixels: uint8 or float32 (height, width, channels) with 1, 3 or 4 channels, row 0 at the top.
+        srgb: whether uint8 colours are sRGB-encoded. Raises ValueError for other shapes and types.
+        """
+
+class Material:
+    """What a surface is made of."""
+
+    def __init__(self, name: str, type: str, albedo: Sequence[float] = ..., ior: float = 1.5, roughness: float = 0.10000000149011612, absorb: float = 0.0, coated: bool = False, emissive_strength: float = 0.0, albedo_texture: int = -1, emission_texture: int = -1, normal_texture: int = -1, cutout_texture: int = -1) -> None:
+        """
+        type: the name of a material type or BSDF. albedo: linear RGB. roughness: GGX alpha. absorb: imaginary part of a
+        conductor's index. Textures: indices into the scene's, -1 for none. Raises ValueError for an unknown type.
+        """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def bsdf(self) -> str: ...
+
+class Mesh:
+    """Triangles of one material."""
+
+    def __init__(self, vertices: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], triangles: Annotated[NDArray[numpy.uint32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], normals: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None = None, uvs: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)] | None = None, material: int = 0) -> None:
+        """
+        vertices: float32 (n, 3). triangles: uint32 (m, 3), counter-clockwise seen from the front. normals: float32 (n, 3),
+        or None for flat shading. uvs: float32 (n, 2), v = 0 at the bottom of an image. material: index into the
+        scene's. Raises ValueError for points that are not finite and indices out of range.
+        """
+
+class Sky:
+    """Light from infinitely far away."""
+
+    def __init__(self, pixels: Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)] | None = None, intensity: float = 1.0, radius: float | None = None) -> None:
+        """
+        pixels: float32 (height, width, 3), equirectangular linear radiance, or None for white. intensity: factor on it.
+        radius: of the sphere that stands for the scene when lights are chosen by power; None: the scene's own.
+        """
+
+class Scene:
+    """Geometry, materials and lights."""
+
+    def __init__(self, meshes: Sequence[Mesh], materials: Sequence[Material], textures: Sequence[Texture] = [], sky: Sky | None = None) -> None:
+        """
+        Copies the meshes and builds the acceleration structure on all cores. Raises ValueError for an index out of range.
+        """
+
+    @property
+    def triangle_count(self) -> int: ...
+
+    @property
+    def memory_bytes(self) -> int:
+        """Bytes of arrays, textures and the acceleration structure."""
+
+    @property
+    def bounds(self) -> tuple[list[float], list[float]] | None:
+        """
+        Lower and upper corner of the axis-aligned bounding box, or None without geometry.
+        """
+
+    @property
+    def lights(self) -> list[Light]:
+        """All lights, area lights in the order of their meshes."""
+
+    def intersect(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> dict:
+        """
+        float32 (n, 3), unit (n, 3). Returns a dict of distance (n,) (inf: miss), position (n, 3), normal and shading_normal
+        (n, 3) on the ray's side, uv (n, 2) and material (n,) int32 (-1: miss).
+        """
+
+    def occluded(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], target: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,))]:
+        """
+        float32 (n, 3), (n, 3) -> bool (n,): whether anything is between, ends included.
+        """
+
+    def sample_light_source(self, u: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
+        """
+        u: float32 (n,) in [0, 1) -> index of the light chosen, int32 (n,), -1 without light, and its probability (n,).
+        """
+
+    def light_source_pdf(self, index: int) -> float:
+        """Probability with which sample_light_source chooses this light."""
+
+class Bsdf:
+    """
+    A BSDF in its local frame: z is the shading normal, wo.z > 0, both directions unit and away from the
+    surface, wi.z < 0 for transmission. f excludes the cosine; pdfs are in solid angle.
+    """
+
+    def __init__(self, type: str, albedo: Sequence[float] = ..., ior: float = 1.5, roughness: float = 0.10000000149011612, absorb: float = 0.0, coated: bool = False, front: bool = True) -> None:
+        """
+        type: a BSDF or material type. front: whether wo is on the outside. Raises ValueError for an unknown type.
+        """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def is_delta(self) -> bool:
+        """Whether f and pdf are 0 everywhere."""
+
+    @property
+    def is_reciprocal(self) -> bool:
+        """Whether f(wo, wi) == f(wi, wo) is claimed."""
+
+    def f(self, wo: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None, 3))]:
+        """float32 (n, 3), (n, 3) -> (n, 3): the BSDF, cosine excluded."""
+
+    def pdf(self, wo: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+        """float32 (n, 3), (n, 3) -> (n,): density of `sample` at wi."""
+
+    def sample(self, wo: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> dict:
+        """
+        wo: float32 (n, 3). u: float32 (n, 3) in [0, 1): lobe choice and two for the direction.
+        Returns a dict of wi (n, 3), weight (n, 3) = f |cos| / pdf, pdf (n,), eta2 (n,) and type (n,) uint8 of BRDF_ bits;
+        type is 0 where sampling failed.
+        """
+
+def bsdfs() -> list[str]:
+    """Names of all BSDFs."""
+
+BRDF_DIFFUSE: int = 1
+
+BRDF_GLOSSY: int = 2
+
+BRDF_SPECULAR: int = 4
+
+BRDF_TRANSMISSION: int = 8
+
+class Light:
+    """
+    A light of a scene. World frame; pdfs in solid angle at the reference point.
+    """
+
+    @property
+    def kind(self) -> str:
+        """"AreaLight" or "SkyLight", ..."""
+
+    @property
+    def power(self) -> float:
+        """What lights are chosen by."""
+
+    @property
+    def material(self) -> str | None:
+        """Name of the material of its mesh; None for the sky."""
+
+    def sample_Li(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> dict:
+        """
+        reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). Returns a dict of wi (n, 3), radiance (n, 3), pdf (n,) and
+        position (n, 3) on the light; pdf is 0 where the point drawn cannot shine there. Occlusion is not looked at.
+        """
+
+    def pdf_Li(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+        """
+        float32 (n, 3), (n, 3) -> (n,): density of `sample_Li` at wi, 0 where the ray finds something else first.
+        """
+
+    def Le(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None, 3))]:
+        """
+        float32 (n, 3), (n, 3) -> (n, 3): radiance of this light seen from there, 0 where something else is in front.
+        """
+
+def light_sampling_weight(mis: str, light_pdf: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], bsdf_pdf: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+    """
+    mis: "power", "balance" or "none". float32 (n,), (n,) -> (n,): weight of a light sample, light_pdf > 0.
+    """
+
+def bsdf_sampling_weight(mis: str, bsdf_pdf: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], light_pdf: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+    """
+    The counterpart: weight of a light that a BSDF sample's ray found, bsdf_pdf > 0.
+    """
+
+class Sampler:
+    """
+    Random numbers as a function of (seed, pixel, sample index, dimension).
+    """
+
+    def __init__(self, kind: str = 'sobol', seed: int = 0) -> None:
+        """Raises ValueError for an unknown kind."""
+
+    def points(self, pixel: int, first: int, count: int, vertex: int = 0, pairs: int = 1) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
+        """
+        Samples first .. first + count of a pixel: the first `pairs` two-dimensional draws at a vertex of the path, float32
+        (count, 2 pairs).
+        """
+
+    def numbers(self, pixel: int, first: int, count: int, vertex: int = 0, draws: int = 1) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
+        """The same for one-dimensional draws: float32 (count, draws)."""
+
+class Camera:
+    """A thin-lens or panorama camera."""
+
+    def __init__(self, pos: Sequence[float], dir: Sequence[float], up: Sequence[float], fov: float, lens_radius: float, focal_depth: float, perspective: bool, width: int, height: int) -> None:
+        """
+        dir and up need be neither unit nor orthogonal; fov is vertical, in degrees. Raises ValueError where dir and up are
+        zero or parallel.
+        """
+
+    @property
+    def width(self) -> int: ...
+
+    @property
+    def height(self) -> int: ...
+
+    @property
+    def focal_depth(self) -> float: ...
+
+    def rays(self, film: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], lens: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.float32], dict(shape=(None, 3))], Annotated[NDArray[numpy.float32], dict(shape=(None, 3))]]:
+        """
+        film: float32 (n, 2), pixels from the top left corner. lens: float32 (n, 2) in [0, 1). Returns origins and unit
+        directions, (n, 3) each.
+        """
+
+def auto_focus(scene: Scene, camera: Camera) -> float:
+    """
+    Geometric mean of the hit distances of pixel-centre rays over the middle quarter (w/4 x h/4) of the image; the camera's
+    own focal depth where none hits.
+    """
+
+def filter_offsets(filter: str, u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None, 2))]:
+    """
+    u: float32 (n, 2) in [0, 1) -> offsets from the pixel's centre drawn from the filter, (n, 2).
+    """
+
+class Renderer:
+    """
+    Renders a scene into its film, as far as it is asked to, again and again.
+    """
+
+    def __init__(self, scene: Scene, camera: Camera, algorithm: str, parameters: Mapping[str, bool | int | float | str] = {}, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0) -> None:
+        """
+        parameters: values of the algorithm's parameters by name. threads: 0 for all cores. Raises ValueError for names and
+        values that do not fit.
+        """
+
+    def render(self, samples: int, progress: object | None = None, time_limit: float | None = None) -> bool:
+        """
+        Brings every pixel to `samples` samples, going on from those it has, with the interpreter free for other threads.
+        progress(fraction, samples_per_pixel) is called about 20 times a second; an exception in it, or from a signal, cancels
+        the render within 100 ms and is raised. time_limit: seconds, after the first sample of each pixel.
+        Returns whether all samples were taken.
+        """
+
+    def cancel(self) -> None:
+        """Makes a running render return, from another thread."""
+
+    def mean(self) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3))]:
+        """
+        float32 (height, width, 3): linear radiance, row 0 at the top; 0 where there is no sample.
+        """
+
+    def sum(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))]:
+        """float64 (height, width, 3): sum of the valid samples."""
+
+    def sum_squares(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))]:
+        """float64 (height, width, 3): sum of their squares."""
+
+    def sample_count(self) -> Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]:
+        """uint64 (height, width): samples taken."""
+
+    @property
+    def rays(self) -> int:
+        """Rays traced, shadow rays included."""
+
+    @property
+    def seconds(self) -> float:
+        """Time spent in `render`."""
+
+    @property
+    def threads(self) -> int: ...
+
+    @property
+    def invalid_count(self) -> int:
+        """Samples that were no finite numbers >= 0; not in the sums."""
+
+    @property
+    def invalid(self) -> list[tuple[int, int, int]]:
+        """The first thousand of them: (x, y, sample)."""

@@ -1,0 +1,160 @@
+// The renderer, with progress and Ctrl-C.
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/variant.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <thread>
+
+#include "bindings/arrays.h"
+#include "driver/renderer.h"
+
+namespace etendue {
+
+namespace {
+
+template <size_t N>
+size_t index_of(const std::array<std::string_view, N>& names, const std::string& name, const char* what) {
+    const auto it = std::ranges::find(names, name);
+    if (it == names.end())
+        throw std::invalid_argument(std::string("there is no ") + what + " \"" + name + "\"");
+    return it - names.begin();
+}
+
+std::unique_ptr<Renderer> make_renderer(const Scene& scene, const Camera& camera,
+                                        const std::string& algorithm,
+                                        const std::map<std::string, ParameterValue>& parameters,
+                                        const std::string& sampler, const std::string& filter, uint64_t seed,
+                                        int threads) {
+    Renderer::Settings settings;
+    settings.sampler = static_cast<Sampler::Kind>(index_of(Sampler::names, sampler, "sampler"));
+    settings.filter = static_cast<Filter::Kind>(index_of(Filter::names, filter, "filter"));
+    settings.seed = seed;
+    settings.threads = threads;
+    return std::make_unique<Renderer>(scene, camera, make_algorithm(algorithm, parameters), settings);
+}
+
+/// Renders on another thread, while this one, which holds the interpreter, looks every so often for signals
+/// and calls `progress`. An exception from either cancels the render, and is raised once it has stopped.
+bool render(Renderer& renderer, uint64_t samples, const nb::object& progress,
+            std::optional<double> time_limit) {
+    using namespace std::chrono_literals;
+    std::mutex mutex;
+    std::condition_variable finished;
+    bool is_finished = false, complete = false;
+    std::exception_ptr failure;
+    std::thread worker([&] {
+        try {
+            complete = renderer.render(samples, time_limit.value_or(INFINITE));
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        const std::lock_guard lock(mutex);
+        is_finished = true;
+        finished.notify_one();
+    });
+    const auto join = [&] {
+        const nb::gil_scoped_release release;
+        worker.join();
+    };
+    const double wanted = static_cast<double>(samples) * static_cast<double>(renderer.film().pixels().size());
+    try {
+        for (bool last = false; !last;) {
+            {
+                const nb::gil_scoped_release release;
+                std::unique_lock lock(mutex);
+                last = finished.wait_for(lock, 50ms, [&] { return is_finished; });
+            }
+            if (PyErr_CheckSignals() != 0) throw nb::python_error();
+            if (!progress.is_none()) {
+                const double done = static_cast<double>(renderer.samples_done()) / wanted;
+                progress(done, done * static_cast<double>(samples));
+            }
+        }
+    } catch (...) {
+        renderer.cancel();
+        join();
+        throw;
+    }
+    join();
+    if (failure) std::rethrow_exception(failure);
+    return complete;
+}
+
+template <class Value>
+Out<double, nb::shape<-1, -1, 3>> per_pixel(const Renderer& renderer, Value&& value) {
+    const Film& film = renderer.film();
+    auto out = new_array<Out<double, nb::shape<-1, -1, 3>>>({film.height(), film.width(), 3});
+    for (size_t i = 0; i < film.pixels().size(); ++i) {
+        const glm::dvec3 v = value(film.pixels()[i]);
+        for (int c = 0; c < 3; ++c) out.data()[3 * i + c] = v[c];
+    }
+    return out;
+}
+
+Out<float, nb::shape<-1, -1, 3>> mean(const Renderer& renderer) {
+    const Film& film = renderer.film();
+    auto out = new_array<Out<float, nb::shape<-1, -1, 3>>>({film.height(), film.width(), 3});
+    for (size_t i = 0; i < film.pixels().size(); ++i) set_vec3(out, i, film.pixels()[i].mean());
+    return out;
+}
+
+Out<uint64_t, nb::shape<-1, -1>> sample_count(const Renderer& renderer) {
+    const Film& film = renderer.film();
+    auto out = new_array<Out<uint64_t, nb::shape<-1, -1>>>({film.height(), film.width()});
+    for (size_t i = 0; i < film.pixels().size(); ++i) out.data()[i] = film.pixels()[i].count;
+    return out;
+}
+
+}  // namespace
+
+void bind_renderer(nb::module_& m) {
+    nb::class_<Renderer>(m, "Renderer",
+                         "Renders a scene into its film, as far as it is asked to, again and again.")
+        .def(nb::new_(&make_renderer), nb::keep_alive<1, 2>(), nb::arg("scene"), nb::arg("camera"),
+             nb::arg("algorithm"), nb::arg("parameters") = std::map<std::string, ParameterValue>{},
+             nb::arg("sampler") = "sobol", nb::arg("filter") = "blackman_harris", nb::arg("seed") = 0,
+             nb::arg("threads") = 0,
+             "parameters: values of the algorithm's parameters by name. threads: 0 for all cores. Raises "
+             "ValueError for names and\n"
+             "values that do not fit.")
+        .def("render", &render, nb::arg("samples"), nb::arg("progress") = nb::none(),
+             nb::arg("time_limit") = nb::none(),
+             "Brings every pixel to `samples` samples, going on from those it has, with the interpreter free "
+             "for other threads.\n"
+             "progress(fraction, samples_per_pixel) is called about 20 times a second; an exception in it, "
+             "or from a signal, cancels\n"
+             "the render within 100 ms and is raised. time_limit: seconds, after the first sample of each "
+             "pixel.\n"
+             "Returns whether all samples were taken.")
+        .def("cancel", &Renderer::cancel, "Makes a running render return, from another thread.")
+        .def("mean", &mean,
+             "float32 (height, width, 3): linear radiance, row 0 at the top; 0 where there is no sample.")
+        .def(
+            "sum", [](const Renderer& r) { return per_pixel(r, [](const Pixel& p) { return p.sum; }); },
+            "float64 (height, width, 3): sum of the valid samples.")
+        .def(
+            "sum_squares",
+            [](const Renderer& r) { return per_pixel(r, [](const Pixel& p) { return p.sum_squares; }); },
+            "float64 (height, width, 3): sum of their squares.")
+        .def("sample_count", &sample_count, "uint64 (height, width): samples taken.")
+        .def_prop_ro("rays", &Renderer::rays, "Rays traced, shadow rays included.")
+        .def_prop_ro("seconds", &Renderer::seconds, "Time spent in `render`.")
+        .def_prop_ro("threads", &Renderer::threads)
+        .def_prop_ro("invalid_count", &Renderer::invalid_count,
+                     "Samples that were no finite numbers >= 0; not in the sums.")
+        .def_prop_ro(
+            "invalid",
+            [](const Renderer& r) {
+                std::vector<std::tuple<uint32_t, uint32_t, uint64_t>> all;
+                for (const auto& s : r.invalid_samples()) all.emplace_back(s.x, s.y, s.sample);
+                return all;
+            },
+            "The first thousand of them: (x, y, sample).");
+}
+
+}  // namespace etendue
