@@ -1,0 +1,73 @@
+"""Étendue renders scenes by path tracing, and shows why an estimator is noisy.
+
+import etendue
+
+scene = etendue.load("configs/a04_box.json")
+film = scene.render(spp=64, algorithm="Pathtracer", mis="balance")
+film.image                      # float32 (height, width, 3), linear radiance, row 0 at the top
+film.save("box.exr")
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .config import Config, read_config
+    from .display import tonemap
+    from .errors import EtendueError, Problem, SceneError
+    from .film import Film
+    from .scene import Scene, load
+
+    __version__: str
+
+__all__ = [
+    "Config",
+    "EtendueError",
+    "Film",
+    "Problem",
+    "Scene",
+    "SceneError",
+    "__version__",
+    "load",
+    "read_config",
+    "tonemap",
+]
+
+_HOME = {
+    "Config": "config",
+    "read_config": "config",
+    "tonemap": "display",
+    "EtendueError": "errors",
+    "Problem": "errors",
+    "SceneError": "errors",
+    "Film": "film",
+    "Scene": "scene",
+    "load": "scene",
+}
+
+
+def __getattr__(name: str) -> Any:
+    # Importing on first use keeps `import etendue`, and so the command, quick.
+    import importlib
+
+    if name == "__version__":
+        return _version()
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("etendue")
+    except PackageNotFoundError:
+        return "unknown"
