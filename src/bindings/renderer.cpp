@@ -29,11 +29,12 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const Camera& camera
                                         const std::string& algorithm,
                                         const std::map<std::string, ParameterValue>& parameters,
                                         const std::string& sampler, const std::string& filter, uint64_t seed,
-                                        int threads) {
+                                        int threads, uint64_t first_sample) {
     Renderer::Settings settings;
     settings.sampler = static_cast<Sampler::Kind>(index_of(Sampler::names, sampler, "sampler"));
     settings.filter = static_cast<Filter::Kind>(index_of(Filter::names, filter, "filter"));
     settings.seed = seed;
+    settings.first_sample = first_sample;
     settings.threads = threads;
     return std::make_unique<Renderer>(scene, camera, make_algorithm(algorithm, parameters), settings);
 }
@@ -103,11 +104,37 @@ Out<float, nb::shape<-1, -1, 3>> mean(const Renderer& renderer) {
     return out;
 }
 
-Out<uint64_t, nb::shape<-1, -1>> sample_count(const Renderer& renderer) {
+template <class Value>
+Out<uint64_t, nb::shape<-1, -1>> counts(const Renderer& renderer, Value&& value) {
     const Film& film = renderer.film();
     auto out = new_array<Out<uint64_t, nb::shape<-1, -1>>>({film.height(), film.width()});
-    for (size_t i = 0; i < film.pixels().size(); ++i) out.data()[i] = film.pixels()[i].count;
+    for (size_t i = 0; i < film.pixels().size(); ++i) out.data()[i] = value(film.pixels()[i]);
     return out;
+}
+
+using Sums = In<double, nb::shape<-1, -1, 3>>;
+using Counts = In<uint64_t, nb::shape<-1, -1>>;
+
+void resume(Renderer& renderer, const Sums& sum, const Sums& sum_squares, const Sums& half_sum,
+            const Counts& sample_count, const Counts& invalid_samples) {
+    const size_t height = sum.shape(0), width = sum.shape(1);
+    for (const Sums* sums : {&sum_squares, &half_sum}) {
+        require_same_length(sums->shape(0), height, "all arrays");
+        require_same_length(sums->shape(1), width, "all arrays");
+    }
+    for (const Counts* counts : {&sample_count, &invalid_samples}) {
+        require_same_length(counts->shape(0), height, "all arrays");
+        require_same_length(counts->shape(1), width, "all arrays");
+    }
+    Film film(width, height);
+    const auto at = [](const Sums& sums, size_t i) {
+        return glm::dvec3(sums.data()[3 * i], sums.data()[3 * i + 1], sums.data()[3 * i + 2]);
+    };
+    for (size_t i = 0; i < width * height; ++i) {
+        film.at(i % width, i / width) = {at(sum, i), at(sum_squares, i), at(half_sum, i),
+                                         sample_count.data()[i], invalid_samples.data()[i]};
+    }
+    renderer.resume(std::move(film));
 }
 
 }  // namespace
@@ -118,10 +145,10 @@ void bind_renderer(nb::module_& m) {
         .def(nb::new_(&make_renderer), nb::keep_alive<1, 2>(), nb::arg("scene"), nb::arg("camera"),
              nb::arg("algorithm"), nb::arg("parameters") = std::map<std::string, ParameterValue>{},
              nb::arg("sampler") = "sobol", nb::arg("filter") = "blackman_harris", nb::arg("seed") = 0,
-             nb::arg("threads") = 0,
-             "parameters: values of the algorithm's parameters by name. threads: 0 for all cores. Raises "
-             "ValueError for names and\n"
-             "values that do not fit.")
+             nb::arg("threads") = 0, nb::arg("first_sample") = 0,
+             "parameters: values of the algorithm's parameters by name. threads: 0 for all cores. "
+             "first_sample: the\n"
+             "index of each pixel's first sample. Raises ValueError for names and values that do not fit.")
         .def("render", &render, nb::arg("samples"), nb::arg("progress") = nb::none(),
              nb::arg("time_limit") = nb::none(),
              "Brings every pixel to `samples` samples, going on from those it has, with the interpreter free "
@@ -141,7 +168,23 @@ void bind_renderer(nb::module_& m) {
             "sum_squares",
             [](const Renderer& r) { return per_pixel(r, [](const Pixel& p) { return p.sum_squares; }); },
             "float64 (height, width, 3): sum of their squares.")
-        .def("sample_count", &sample_count, "uint64 (height, width): samples taken.")
+        .def(
+            "half_sum",
+            [](const Renderer& r) { return per_pixel(r, [](const Pixel& p) { return p.half_sum; }); },
+            "float64 (height, width, 3): sum of the valid samples of even index.")
+        .def(
+            "sample_count",
+            [](const Renderer& r) { return counts(r, [](const Pixel& p) { return p.count; }); },
+            "uint64 (height, width): samples taken.")
+        .def(
+            "invalid_per_pixel",
+            [](const Renderer& r) { return counts(r, [](const Pixel& p) { return p.invalid; }); },
+            "uint64 (height, width): of those, how many are not in the sums.")
+        .def("resume", &resume, nb::arg("sum"), nb::arg("sum_squares"), nb::arg("half_sum"),
+             nb::arg("sample_count"), nb::arg("invalid_per_pixel"),
+             "Goes on from these, as another renderer of the same scene, settings and first sample gave "
+             "them. Raises\n"
+             "ValueError for another size.")
         .def_prop_ro("rays", &Renderer::rays, "Rays traced, shadow rays included.")
         .def_prop_ro("seconds", &Renderer::seconds, "Time spent in `render`.")
         .def_prop_ro("threads", &Renderer::threads)

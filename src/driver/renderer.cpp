@@ -7,6 +7,7 @@
 #include <xmmintrin.h>
 
 #include <chrono>
+#include <stdexcept>
 
 namespace etendue {
 
@@ -49,6 +50,13 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Alg
       film_(camera.width(), camera.height()),
       tiles_x_((camera.width() + TILE - 1) / TILE),
       tiles_y_((camera.height() + TILE - 1) / TILE) {}
+
+void Renderer::resume(Film film) {
+    if (film.width() != film_.width() || film.height() != film_.height()) {
+        throw std::invalid_argument("the film is of another size than the camera");
+    }
+    film_ = std::move(film);
+}
 
 bool Renderer::render(uint64_t samples, double time_limit) {
     const Clock::time_point start = Clock::now();
@@ -103,14 +111,15 @@ uint64_t Renderer::render_pixel(Context& context, uint32_t x, uint32_t y, uint64
     Pixel& pixel = film_.at(x, y);
     // By place on the film, so that a pixel's samples do not depend on the size of the image.
     const uint32_t id = y << 16 | x;
-    const uint64_t first = pixel.count;
-    for (uint64_t sample = first; sample < samples && !stop_; ++sample) {
+    const uint64_t before = pixel.count;
+    while (pixel.count < samples && !stop_) {
+        const uint64_t sample = settings_.first_sample + pixel.count;
         context.sampler.start(id, sample);
         const vec2 film = vec2(x, y) + 0.5f + filter_.sample(context.sampler.next_2d());
         const Ray ray = camera_.ray(film, context.sampler.next_2d());
-        if (!pixel.add(algorithm_->radiance(context, ray))) report_invalid({x, y, sample});
+        if (!pixel.add(algorithm_->radiance(context, ray), sample)) report_invalid({x, y, sample});
     }
-    return pixel.count - first;
+    return pixel.count - before;
 }
 
 void Renderer::report_invalid(const InvalidSample& sample) {

@@ -19,7 +19,8 @@ class Renderer {
         Sampler::Kind sampler = Sampler::Kind::sobol;
         Filter::Kind filter = Filter::Kind::blackman_harris;
         uint64_t seed = 0;
-        int threads = 0;  // 0: all
+        uint64_t first_sample = 0;  // index of the first sample of each pixel
+        int threads = 0;            // 0: all
     };
     /// A sample whose radiance was not a finite number >= 0; it is not in the film's sums.
     struct InvalidSample {
@@ -43,6 +44,9 @@ class Renderer {
     uint64_t samples_done() const { return samples_done_; }
 
     const Film& film() const { return film_; }
+    /// Goes on from another film of the same size, scene, settings and first sample. Throws std::invalid_argument
+    /// for another size.
+    void resume(Film film);
     uint64_t rays() const { return rays_; }
     uint64_t invalid_count() const { return invalid_count_; }
     /// The first of them, at most MAX_INVALID_LISTED.

@@ -10,11 +10,12 @@ namespace etendue {
 struct Pixel {
     glm::dvec3 sum{0};
     glm::dvec3 sum_squares{0};
-    uint64_t count = 0;    // of samples taken
-    uint64_t invalid = 0;  // of those, how many were no finite numbers >= 0 and are not in the sums
+    glm::dvec3 half_sum{0};  // of every other sample, by its index: what is left is a second estimate
+    uint64_t count = 0;      // of samples taken
+    uint64_t invalid = 0;    // of those, how many were no finite numbers >= 0 and are not in the sums
 
     /// False where the sample is invalid.
-    bool add(const vec3& radiance) {
+    bool add(const vec3& radiance, uint64_t index) {
         ++count;
         if (!(radiance.x >= 0 && radiance.y >= 0 && radiance.z >= 0 && max_component(radiance) < INFINITE)) {
             ++invalid;
@@ -23,6 +24,7 @@ struct Pixel {
         const glm::dvec3 r(radiance);
         sum += r;
         sum_squares += r * r;
+        if (index % 2 == 0) half_sum += r;
         return true;
     }
 

@@ -43,7 +43,8 @@ struct Metal : GgxReflection<Metal> {
     };
 
     static float fresnel(const Surface& surface, float cos_h) {
-        return fresnel_conductor(cos_h, surface.ior, surface.absorb);
+        // Where nothing is reflected rounding leaves a little less than that.
+        return std::max(fresnel_conductor(cos_h, surface.ior, surface.absorb), 0.f);
     }
 };
 
