@@ -342,10 +342,10 @@ class Renderer:
     Renders a scene into its film, as far as it is asked to, again and again.
     """
 
-    def __init__(self, scene: Scene, camera: Camera, algorithm: str, parameters: Mapping[str, bool | int | float | str] = {}, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0) -> None:
+    def __init__(self, scene: Scene, camera: Camera, algorithm: str, parameters: Mapping[str, bool | int | float | str] = {}, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0, first_sample: int = 0) -> None:
         """
-        parameters: values of the algorithm's parameters by name. threads: 0 for all cores. Raises ValueError for names and
-        values that do not fit.
+        parameters: values of the algorithm's parameters by name. threads: 0 for all cores. first_sample: the
+        index of each pixel's first sample. Raises ValueError for names and values that do not fit.
         """
 
     def render(self, samples: int, progress: object | None = None, time_limit: float | None = None) -> bool:
@@ -370,8 +370,20 @@ class Renderer:
     def sum_squares(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))]:
         """float64 (height, width, 3): sum of their squares."""
 
+    def half_sum(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))]:
+        """float64 (height, width, 3): sum of the valid samples of even index."""
+
     def sample_count(self) -> Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]:
         """uint64 (height, width): samples taken."""
+
+    def invalid_per_pixel(self) -> Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]:
+        """uint64 (height, width): of those, how many are not in the sums."""
+
+    def resume(self, sum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], sum_squares: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], half_sum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], sample_count: Annotated[NDArray[numpy.uint64], dict(shape=(None, None), order='C', device='cpu', writable=False)], invalid_per_pixel: Annotated[NDArray[numpy.uint64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None:
+        """
+        Goes on from these, as another renderer of the same scene, settings and first sample gave them. Raises
+        ValueError for another size.
+        """
 
     @property
     def rays(self) -> int:

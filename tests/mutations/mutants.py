@@ -1,0 +1,294 @@
+"""Wrong estimators and wrong pdfs, each one line away from the right ones, and the tests that must catch them.
+
+All of them are built into one module: a copy of the sources in which every mutated expression reads
+`(mutant(k) ? wrong : right)`, with k chosen by the environment variable ETENDUE_MUTANT.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One mistake: the expression `right` in a file under src/ becomes `wrong`.
+
+    `tests` are pytest's arguments that select tests which fail on it and pass without it.
+    """
+
+    name: str
+    file: str
+    right: str
+    wrong: str
+    tests: tuple[str, ...]
+
+
+ANALYTIC = "tests/estimators/test_analytic.py"
+BSDF = "tests/statistics/test_bsdf_sampling.py"
+LIGHTS = "tests/statistics/test_light_sampling.py"
+SAMPLER = "tests/statistics/test_sampler.py"
+
+
+def furnace(file: str = ANALYTIC) -> tuple[str, ...]:
+    return (file, "-k", "furnace")
+
+
+MUTANTS = (
+    Mutant(
+        "roulette without reweighting",
+        "algorithms/russian_roulette.h",
+        "throughput /= 1 - q",
+        "throughput /= 1",
+        furnace(),
+    ),
+    Mutant(
+        "light-selection probability missing",
+        "algorithms/direct_light.h",
+        "choice->pmf * sample->pdf",
+        "sample->pdf",
+        (ANALYTIC, "-k", "two_lamps"),
+    ),
+    Mutant(
+        "light-selection probability missing in the weight of light found by chance",
+        "algorithms/pathtracer.cpp",
+        "context.scene.light_source_pdf(hit.light) * hit.light->pdf_Li(hit)",
+        "hit.light->pdf_Li(hit)",
+        (ANALYTIC, "-k", "two_lamps"),
+    ),
+    Mutant(
+        "cosine twice",
+        "algorithms/direct_light.h",
+        "std::abs(glm::dot(sample->wi, hit.frame.n))",
+        "sqr(glm::dot(sample->wi, hit.frame.n))",
+        (ANALYTIC, "-k", "disc_over or uniform_sky"),
+    ),
+    Mutant(
+        "area pdf not converted to solid angle",
+        "gi/lights/area_light.cpp",
+        "distance2 / (cos_light * area_)",
+        "1 / area_",
+        (ANALYTIC, "-k", "disc_over"),
+    ),
+    Mutant(
+        "back side of a light shining",
+        "gi/lights/area_light.h",
+        "hit.front ? material_->emission_at(hit.uv) : vec3(0)",
+        "material_->emission_at(hit.uv)",
+        (ANALYTIC, "-k", "back_of_a_lamp"),
+    ),
+    Mutant(
+        "triangles of a light chosen alike, whatever their area",
+        "gi/lights/area_light.cpp",
+        "mesh.area(static_cast<uint32_t>(i))",
+        "mesh.area(0)",
+        (ANALYTIC, "-k", "sphere_over"),
+    ),
+    Mutant(
+        "points crowd in a corner of a triangle",
+        "gi/sampling.h",
+        "{u.x - y, y}",
+        "{(u.x - y) * (u.x - y), y}",
+        (ANALYTIC, "-k", "parallel_plates"),
+    ),
+    Mutant(
+        "MIS weight of the wrong pair",
+        "algorithms/pathtracer.cpp",
+        "bsdf_sampling_weight(mis_, prev_pdf, light_pdf(context, hit))",
+        "light_sampling_weight(mis_, prev_pdf, light_pdf(context, hit) / 2)",
+        furnace(),
+    ),
+    Mutant(
+        "light found by chance counted beside light sampling",
+        "algorithms/direct_light.h",
+        "light_pdf > 0 ? 0 : 1",
+        "1",
+        furnace(),
+    ),
+    Mutant(
+        "power heuristic that is none",
+        "gi/sampling.h",
+        "1 / (1 + sqr(pdf_b / pdf_a))",
+        "1 / (1 + pdf_b / pdf_a * std::sqrt(pdf_b / pdf_a) / 2)",
+        furnace(),
+    ),
+    Mutant(
+        "every bounce taken for a delta bounce",
+        "algorithms/pathtracer.cpp",
+        "bounce->is_delta()",
+        "true",
+        furnace(),
+    ),
+    Mutant(
+        "sky without sin theta",
+        "gi/lights/sky_light.cpp",
+        "cells_.pmf(x, y) / solid_angle",
+        "cells_.pmf(x, y) / (4 * PI / static_cast<float>(w * h))",
+        (ANALYTIC, "-k", "uniform_sky"),
+    ),
+    Mutant(
+        "sky sampled where it is not seen",
+        "gi/lights/sky_light.cpp",
+        "2 * PI * (static_cast<float>(cell.x) + cell.remapped.x)",
+        "-2 * PI * (static_cast<float>(cell.x) + cell.remapped.x)",
+        (LIGHTS,),
+    ),
+    Mutant(
+        "Jacobian of the half vector missing",
+        "gi/microfacet.h",
+        "D(half(wo, wi)) / (2 * (wo.z + root(wo)))",
+        "D(half(wo, wi)) * 4 * glm::dot(wo, half(wo, wi)) / (2 * (wo.z + root(wo)))",
+        (BSDF,),
+    ),
+    Mutant(
+        "masking counted without shadowing",
+        "gi/ggx_reflection.h",
+        "ggx.G2(wo, wi) / ggx.G1(wo)",
+        "ggx.G1(wo)",
+        (BSDF,),
+    ),
+    Mutant(
+        "layered pdf of one lobe alone",
+        "gi/bsdfs/layered_ggx.h",
+        "(1 - coat) * cosine_hemisphere_pdf(wi.z)",
+        "cosine_hemisphere_pdf(wi.z)",
+        (BSDF,),
+    ),
+    Mutant(
+        "last vertex looks for light beyond the path length",
+        "algorithms/pathtracer.cpp",
+        "depth == MAX_CAM_PATH_LENGTH",
+        "depth > MAX_CAM_PATH_LENGTH",
+        furnace(),
+    ),
+    Mutant(
+        "shadows forgotten",
+        "algorithms/direct_light.h",
+        "!context.visible(hit, *sample)",
+        "false",
+        (ANALYTIC, "-k", "two_lamps"),
+    ),
+    Mutant(
+        "radiance not compressed by refraction",
+        "gi/bsdfs/glass.h",
+        "surface.albedo / sqr(eta)",
+        "surface.albedo",
+        (ANALYTIC, "-k", "lamp_inside_glass"),
+    ),
+    Mutant(
+        "Fresnel as weight and as probability",
+        "gi/bsdfs/glass.h",
+        "surface.albedo, reflectance, BRDF_SPECULAR",
+        "surface.albedo * reflectance, reflectance, BRDF_SPECULAR",
+        (ANALYTIC, "-k", "glass_slabs"),
+    ),
+    Mutant(
+        "refraction always into the glass",
+        "gi/bsdf.h",
+        "front ? ior : 1 / ior",
+        "ior",
+        (ANALYTIC, "-k", "glass_slabs"),
+    ),
+    Mutant(
+        "rays that start on the surface itself",
+        "gi/ray.h",
+        "glm::dot(glm::abs(normal), error)",
+        "0.f",
+        furnace(),
+    ),
+    Mutant(
+        "one random sequence for all pixels",
+        "gi/sampler.h",
+        "mix_bits(seed_ ^ pixel)",
+        "mix_bits(seed_)",
+        (SAMPLER,),
+    ),
+    Mutant(
+        "Sobol's second coordinate is its first",
+        "gi/sampler.h",
+        "scramble(second_coordinate_reversed(index), low(mix_bits(h)))",
+        "scramble(index, low(mix_bits(h)))",
+        (SAMPLER,),
+    ),
+)
+
+# Statements cannot stand in `? :`; these mutants differ in an operand instead.
+_OPERANDS = {"throughput /= 1 - q": ("throughput /= ", "1 - q", "1"),
+             "surface.albedo, reflectance, BRDF_SPECULAR": ("", "surface.albedo", "surface.albedo * reflectance")}  # fmt: skip
+
+SWITCH = """#pragma once
+#include <cstdlib>
+inline bool mutant(int k) {
+    static const int chosen = [] {
+        const char* const text = std::getenv("ETENDUE_MUTANT");
+        return text ? std::atoi(text) : 0;
+    }();
+    return chosen == k;
+}
+"""
+
+
+def mutate(source: str, mutant: Mutant, number: int) -> str:
+    """The source with a switch at the mutant's place."""
+    if source.count(mutant.right) != 1:
+        raise ValueError(
+            f"{mutant.file}: {mutant.right!r} stands there {source.count(mutant.right)} times, not once"
+        )
+    before, right, wrong = _OPERANDS.get(mutant.right, ("", mutant.right, mutant.wrong))
+    after = mutant.right[len(before) + len(right) :]
+    if right.startswith("{"):  # a braced list needs its type to stand in an expression
+        right, wrong = f"vec2{right}", f"vec2{wrong}"
+    return source.replace(mutant.right, f"{before}(mutant({number}) ? ({wrong}) : ({right})){after}")
+
+
+def build(folder: Path) -> Path:
+    """Builds the module with all mutants below `folder` and gives back its path."""
+    sources = folder / "source"
+    shutil.rmtree(sources / "src", ignore_errors=True)
+    shutil.copytree(ROOT / "src", sources / "src")
+    shutil.copy(ROOT / "CMakeLists.txt", sources)
+    (sources / "python" / "etendue").mkdir(parents=True, exist_ok=True)
+    (sources / "mutant.h").write_text(SWITCH)
+    for number, mutant in enumerate(MUTANTS, 1):
+        path = sources / "src" / mutant.file
+        path.write_text(mutate(path.read_text(), mutant, number))
+    nanobind = subprocess.run(
+        [sys.executable, "-m", "nanobind", "--cmake_dir"], capture_output=True, text=True, check=True
+    ).stdout.strip()
+    built = folder / "build"
+    run(
+        "cmake", "-S", sources, "-B", built, "-G", "Ninja", f"-DPython_EXECUTABLE={sys.executable}",
+        f"-Dnanobind_ROOT={nanobind}", f"-DCMAKE_CXX_FLAGS=-include {sources / 'mutant.h'}",
+    )  # fmt: skip
+    run("cmake", "--build", built, "--target", "_core")
+    return next(built.glob("_core*.so"))
+
+
+def run(*command: object) -> None:
+    done = subprocess.run(
+        [str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    if done.returncode:
+        raise RuntimeError(done.stdout[-4000:])
+
+
+def failing(core: Path, number: int, tests: tuple[str, ...]) -> bool:
+    """Whether the tests fail on mutant `number`; 0 is the right one."""
+    environment = {**os.environ, "ETENDUE_TEST_CORE": str(core), "ETENDUE_MUTANT": str(number)}
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", *tests],
+        cwd=ROOT,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    if done.returncode not in (0, 1):
+        raise RuntimeError(f"pytest ended with {done.returncode}:\n{done.stdout[-4000:]}")
+    return done.returncode == 1
