@@ -1,4 +1,4 @@
-"""What all tests share: the option --slow, random examples that are the same in every run, and which core is tested.
+"""What all tests share: the option --slow, random examples that are the same in every run, and the core.
 
 ETENDUE_TEST_CORE names another build of etendue._core to test: one with mutants, or with sanitizers.
 """

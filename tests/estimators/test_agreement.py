@@ -1,7 +1,7 @@
 """On the six scenes every estimator must converge to the same picture, whatever its settings.
 
-Each image is cut into tiles; several independent renders give each tile's mean an honest spread; Welch's test compares
-tiles between estimators, and Holm's correction keeps the whole table at one false alarm in a thousand.
+Each image is cut into tiles; several independent renders give each tile's mean an honest spread; Welch's test
+compares tiles between estimators, and Holm's correction keeps the whole table at one false alarm in a thousand.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ import itertools
 from functools import cache
 from pathlib import Path
 
-import etendue
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy import stats
+
+import etendue
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 SCENES = ("box", "pots", "sibenik", "spz", "fireplace", "mis")
@@ -97,7 +98,7 @@ def test_roulette_moves_no_mean(name: str, estimator: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_p_values_are_uniform(name: str) -> None:
-    """Of two groups of renders that differ in their seeds alone, so that the test itself is shown to be calibrated."""
+    """Of renders that differ in their seeds alone: the test itself is calibrated."""
     renders = tiles(name, "mis", 0.25, 512, 12)
     p = stats.ttest_ind(renders[: REPEATS // 2], renders[REPEATS // 2 :], equal_var=False).pvalue
     assert stats.kstest(p[~np.isnan(p)], "uniform").pvalue > FALSE_ALARMS

@@ -1,7 +1,8 @@
 """Scenes whose radiance is known: every estimator must give it, by t-test over independent pixels.
 
-Each camera sees one point, so that pixels are independent estimates of one number.  One false alarm in a thousand
-runs of the whole file is allowed for (Sidak over its tests), and seeds are fixed, so a failure is a fault.
+Each camera sees one point, so that pixels are independent estimates of one number. One false alarm in a
+thousand runs of the whole file is allowed for (Sidak over its tests), and seeds are fixed, so a failure is a
+fault.
 """
 
 from __future__ import annotations
@@ -10,9 +11,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy import stats
+
 from etendue import _core
 from etendue.models import mesh as meshes
-from scipy import stats
 
 from .worlds import Estimator, diffuse, estimators, full_transport, ground, lamp, looking, scene
 
@@ -41,7 +43,7 @@ def expect(renderer: _core.Renderer, expected: float, model_error: float = MODEL
 @pytest.mark.parametrize("albedo", [0.5, 0.8])
 @pytest.mark.parametrize("edges", [1, 2, 3, 200])
 def test_furnace(estimator: Estimator, albedo: float, edges: int) -> None:
-    """In a closed box of albedo a and emission 1, n edges see 1 + a + ... + a^(n-1), in the end 1 / (1 - a)."""
+    """In a closed box of albedo a and emission 1, n edges see 1 + a + ... + a^(n-1)."""
     taken = min(edges, estimator.longest_path or edges)
     box = scene((meshes.box(2, 2, 2).moved(1, 1, 1).flipped(), diffuse(albedo, emission=1)))
     renderer = estimator.render(box, looking((0.9, 1.1, 1), (0, 0.7, 0.6)), spp=128, edges=edges)
@@ -71,7 +73,7 @@ def test_disc_over_a_plane(estimator: Estimator) -> None:
 def test_sphere_over_a_plane(estimator: Estimator) -> None:
     """Under a sphere at distance d: E = pi L (R / d)^2 cos theta, wherever it is wholly above the horizon."""
     radius, centre = 0.5, np.array([0.6, 1.2, 0.0])
-    # The polyhedron's outline is a little inside the sphere's: cos(pi / n) on average over both axes, corrected in R.
+    # The polyhedron's outline is a little inside the sphere's: by cos(pi / n), corrected in its radius.
     sphere = meshes.sphere(radius / math.sqrt(math.cos(math.pi / 256)), 256, 128).flat().moved(*centre)
     world = scene((ground(8), diffuse(0.5)), (sphere, lamp(4)))
     renderer = estimator.render(world, looking((-1.5, 0.5, 0), (0, 0, 0)), spp=256)
@@ -82,7 +84,7 @@ def test_sphere_over_a_plane(estimator: Estimator) -> None:
 @any_estimator
 @pytest.mark.parametrize("hidden", [False, True], ids=["both", "one-hidden"])
 def test_two_lamps(estimator: Estimator, hidden: bool) -> None:
-    """Light of two discs of unlike size and strength adds up; a black card in front of one takes its share away."""
+    """Light of two unlike discs adds up; a black card in front of one takes its share away."""
     lamps = [(0.3, 1.0, 8.0, -0.8), (0.6, 1.0, 1.5, 0.9)]  # radius, height, radiance, x
     parts = [(ground(8), diffuse(0.5))]
     expected = 0.0
@@ -109,7 +111,7 @@ def test_back_of_a_lamp_is_dark(estimator: Estimator) -> None:
 @any_estimator
 @pytest.mark.parametrize("albedo", [0.3, 0.9])
 def test_one_bounce_between_parallel_plates(estimator: Estimator, albedo: float) -> None:
-    """Under a rectangle, off its middle: the form factors of its four corners' rectangles (Howell, B-3) add up."""
+    """Under a rectangle the form factors of its four corners' rectangles (Howell, B-3) add up."""
     height, x0, x1, z0, z1 = 0.8, -0.4, 1.0, -0.7, 0.5
     plate = meshes.quad((x0, height, z0), (x1, height, z0), (x1, height, z1), (x0, height, z1))
     world = scene((ground(6), diffuse(albedo)), (plate, lamp(2)))
@@ -164,7 +166,7 @@ def test_glass_slabs(estimator: Estimator, slabs: int) -> None:
 
 @full_estimator
 def test_lamp_inside_glass(estimator: Estimator) -> None:
-    """Radiance crossing into air is divided by n^2 on the way in and multiplied on the way out: (1 - F) L / n^2 here."""
+    """A path that enters glass carries radiance divided by n^2: (1 - F) L / n^2 here."""
     ior = 1.5
     pane = ground(400, y=0)
     bottom = ground(400, y=-0.5)

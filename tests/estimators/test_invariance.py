@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import stats
+
 from etendue import _core
 from etendue.models import box
-from scipy import stats
 
 from .worlds import Estimator, core_mesh, diffuse, estimators, lamp
 
@@ -14,7 +15,7 @@ SIZE = 32
 
 
 def cornell(scale: float = 1, offset: float = 0) -> tuple[_core.Scene, _core.Camera]:
-    """The bundled Cornell box, its camera, and a glass block in it, scaled about the origin and then moved."""
+    """The Cornell box with a glass block, and its camera, scaled about the origin and then moved."""
     model = box.model()
     materials, parts = [], []
     for name, meshes in model.parts.items():

@@ -1,4 +1,4 @@
-"""Small scenes with known radiance, and every estimator that there is, in every setting worth telling apart."""
+"""Small scenes with known radiance, and every estimator in every setting worth telling apart."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
+
 from etendue import _core
 from etendue.models import mesh as meshes
-from numpy.typing import NDArray
 
 Array = NDArray[np.float32]
 
@@ -81,7 +82,7 @@ class Estimator:
 
 
 def estimators(roulette: tuple[float, ...] = (0, 1)) -> Iterator[Estimator]:
-    """Every algorithm that pictures light transport, with every choice of its choices and each roulette threshold.
+    """Every algorithm that pictures light transport, with each of its choices and roulette thresholds.
 
     With a threshold of 1 roulette acts at every bounce but the first.
     """

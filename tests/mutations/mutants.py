@@ -1,4 +1,4 @@
-"""Wrong estimators and wrong pdfs, each one line away from the right ones, and the tests that must catch them.
+"""Wrong estimators and pdfs, each one line away from the right ones, and the tests that must catch them.
 
 All of them are built into one module: a copy of the sources in which every mutated expression reads
 `(mutant(k) ? wrong : right)`, with k chosen by the environment variable ETENDUE_MUTANT.
@@ -219,8 +219,10 @@ MUTANTS = (
 )
 
 # Statements cannot stand in `? :`; these mutants differ in an operand instead.
-_OPERANDS = {"throughput /= 1 - q": ("throughput /= ", "1 - q", "1"),
-             "surface.albedo, reflectance, BRDF_SPECULAR": ("", "surface.albedo", "surface.albedo * reflectance")}  # fmt: skip
+_OPERANDS = {
+    "throughput /= 1 - q": ("throughput /= ", "1 - q", "1"),
+    "surface.albedo, reflectance, BRDF_SPECULAR": ("", "surface.albedo", "surface.albedo * reflectance"),
+}
 
 SWITCH = """#pragma once
 #include <cstdlib>
