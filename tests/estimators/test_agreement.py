@@ -1,7 +1,8 @@
 """On the six scenes every estimator must converge to the same picture, whatever its settings.
 
-Each image is cut into tiles; several independent renders give each tile's mean an honest spread; Welch's test
-compares tiles between estimators, and Holm's correction keeps the whole table at one false alarm in a thousand.
+Each image is cut into tiles; several independent renders give each tile's mean an honest spread;
+Welch's test compares tiles between estimators, and Holm's correction keeps the whole table at one false alarm
+in a thousand.
 """
 
 from __future__ import annotations
