@@ -37,7 +37,7 @@ class Mesh:
         return Mesh(self.vertices + np.array([x, y, z], float), self.faces, self.normals, self.uvs)
 
     def scaled(self, x: float, y: float | None = None, z: float | None = None) -> Mesh:
-        """The mesh scaled about the origin; one number scales all axes alike.  Mirroring keeps the front outside."""
+        """The mesh scaled about the origin, by one number or three. Mirroring keeps the front outside."""
         factors = np.array([x, x if y is None else y, x if z is None else z], float)
         return self.transformed(np.diag(factors))
 
@@ -60,13 +60,15 @@ class Mesh:
         return Mesh(self.vertices @ m.T, faces, normals, self.uvs)
 
     def bent(self, f: Callable[[Floats], Floats]) -> Mesh:
-        """The mesh with every vertex sent through `f` ((n, 3) to (n, 3)); smooth normals are computed anew."""
+        """The mesh with its vertices sent through `f`, (n, 3) to (n, 3); smooth normals are computed anew."""
         bent = Mesh(np.asarray(f(self.vertices), float), self.faces, None, self.uvs)
         return bent if self.normals is None else bent.smooth()
 
     def flipped(self) -> Mesh:
         """The mesh inside out."""
-        return Mesh(self.vertices, self.faces[:, ::-1], None if self.normals is None else -self.normals, self.uvs)
+        return Mesh(
+            self.vertices, self.faces[:, ::-1], None if self.normals is None else -self.normals, self.uvs
+        )
 
     def flat(self) -> Mesh:
         """The mesh without shading normals."""
@@ -108,7 +110,7 @@ class Mesh:
 
 
 def merged(meshes: Iterable[Mesh]) -> Mesh:
-    """One mesh of many; those without normals or uvs get flat normals and zero uvs where any other has them."""
+    """One mesh of many; where any has normals or uvs, the others get flat normals and zero uvs."""
     parts = list(meshes)
     with_normals = any(p.normals is not None for p in parts)
     with_uvs = any(p.uvs is not None for p in parts)
@@ -125,13 +127,16 @@ def merged(meshes: Iterable[Mesh]) -> Mesh:
     )
 
 
-def surface(f: Callable[[Floats, Floats], Floats], nu: int, nv: int, uv_scale: tuple[float, float] = (1, 1)) -> Mesh:
+def surface(
+    f: Callable[[Floats, Floats], Floats], nu: int, nv: int, uv_scale: tuple[float, float] = (1, 1)
+) -> Mesh:
     """A smooth patch: `f(u, v)` over the unit square, arrays (n,) to positions (n, 3), in nu x nv quads.
 
     The front is the side of dP/du x dP/dv.
     """
-    v, u = np.meshgrid(np.linspace(0, 1, nv + 1), np.linspace(0, 1, nu + 1), indexing="ij")
-    u, v = u.ravel(), v.ravel()
+    v, u = (
+        t.ravel() for t in np.meshgrid(np.linspace(0, 1, nv + 1), np.linspace(0, 1, nu + 1), indexing="ij")
+    )
     i = (np.arange(nv)[:, None] * (nu + 1) + np.arange(nu)).ravel()
     a, b, c, d = i, i + 1, i + nu + 2, i + nu + 1
     faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
@@ -141,11 +146,16 @@ def surface(f: Callable[[Floats, Floats], Floats], nu: int, nv: int, uv_scale: t
     return Mesh(mesh.vertices, mesh.faces[area > 1e-14], None, mesh.uvs).smooth()
 
 
-def quad(a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike, uv_scale: tuple[float, float] = (1, 1)) -> Mesh:
+def quad(
+    a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike, uv_scale: tuple[float, float] = (1, 1)
+) -> Mesh:
     """A flat quadrilateral, counter-clockwise seen from its front; a is at uv (0, 0), c at `uv_scale`."""
     s, t = uv_scale
     return Mesh(
-        np.array([a, b, c, d], float), np.array([[0, 1, 2], [0, 2, 3]]), None, np.array([[0, 0], [s, 0], [s, t], [0, t]], float)
+        np.array([a, b, c, d], float),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        None,
+        np.array([[0, 0], [s, 0], [s, t], [0, t]], float),
     )
 
 
@@ -160,7 +170,8 @@ def box(x: float, y: float, z: float, uv_scale: float = 1) -> Mesh:
             corners[:, axis] = sign * h[axis]
             corners[:, u] = np.array([-1, 1, 1, -1]) * h[u] * sign
             corners[:, v] = np.array([-1, -1, 1, 1]) * h[v]
-            sides.append(quad(*corners, uv_scale=(2 * h[u] * uv_scale, 2 * h[v] * uv_scale)))
+            a, b, c, d = corners
+            sides.append(quad(a, b, c, d, uv_scale=(2 * h[u] * uv_scale, 2 * h[v] * uv_scale)))
     return merged(sides)
 
 
@@ -196,7 +207,9 @@ def rounded_prism(footprint: ArrayLike, height: float, radius: float, steps: int
     fan = np.stack([np.zeros(n - 2, int), np.arange(1, n - 1), np.arange(2, n)], 1)
     # At both caps the corners' arcs have shrunk to points.
     fan = fan[(fan[:, 1] // (steps + 1) != fan[:, 2] // (steps + 1)) & (fan[:, 1] > steps)]
-    faces = np.concatenate([np.stack([i, i + n, j], 1), np.stack([j, i + n, j + n], 1), fan, fan[:, ::-1] + (rings - 1) * n])
+    faces = np.concatenate(
+        [np.stack([i, i + n, j], 1), np.stack([j, i + n, j + n], 1), fan, fan[:, ::-1] + (rings - 1) * n]
+    )
     q = vertices[faces]
     keep = np.linalg.norm(np.cross(q[:, 1] - q[:, 0], q[:, 2] - q[:, 0]), axis=1) > 1e-14
     return Mesh(vertices, faces[keep], normals)
@@ -263,7 +276,9 @@ def sweep(section: ArrayLike, path: ArrayLike, closed_section: bool = True, clos
     over = np.cross(right, tangent)
     # A mitred corner is wider than the section by 1 / cos of half the turn.
     half_turn = np.clip(np.einsum("ij,ij->i", tangent, _unit(p - behind)), 0.3, 1)
-    rows = p[:, None] + s[None, :, :1] * (right / half_turn[:, None])[:, None] + s[None, :, 1:] * over[:, None]
+    rows = (
+        p[:, None] + s[None, :, :1] * (right / half_turn[:, None])[:, None] + s[None, :, 1:] * over[:, None]
+    )
     if closed_path:
         rows = np.concatenate([rows, rows[:1]])
     n, m = rows.shape[:2]
@@ -289,7 +304,7 @@ def extruded(outline: ArrayLike, depth: float) -> Mesh:
 
 
 def bezier(control: ArrayLike, n: int = 8) -> Mesh:
-    """A bicubic Bezier patch of control points (4, 4, 3) in n x n quads; rows run along v, columns along u."""
+    """A bicubic Bezier patch of control points (4, 4, 3), rows along v, columns along u, in n x n quads."""
     c = np.asarray(control, float)
 
     def bernstein(t: Floats) -> Floats:
@@ -318,7 +333,8 @@ def _ear_clip(p: Floats) -> Ints:
                 continue
             rest = [q for q in left if q not in (i, j, m)]
             if not any(
-                cross(p[i], p[j], p[q]) >= 0 and cross(p[j], p[m], p[q]) >= 0 and cross(p[m], p[i], p[q]) >= 0 for q in rest
+                cross(p[i], p[j], p[q]) >= 0 and cross(p[j], p[m], p[q]) >= 0 and cross(p[m], p[i], p[q]) >= 0
+                for q in rest
             ):
                 out.append((i, j, m))
                 del left[k]

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
-from etendue.models.mesh import Mesh, merged
+from etendue.models.mesh import Floats, Mesh, merged
 
 Colour = Sequence[float]
 
 
 @dataclass(frozen=True)
 class MtlMaterial:
-    """A material as the MTL format words it; colours are linear RGB, texture names are relative to the MTL file."""
+    """A material as the MTL format words it: linear RGB colours, texture names relative to the MTL file."""
 
     name: str
     kd: Colour = (0.8, 0.8, 0.8)
@@ -30,9 +31,16 @@ class MtlMaterial:
 
     def text(self) -> str:
         lines = [f"newmtl {self.name}"]
-        lines += [f"{key} {_numbers(value)}" for key, value in (("Kd", self.kd), ("Ks", self.ks), ("Ke", self.ke))]
+        lines += [
+            f"{key} {_numbers(value)}" for key, value in (("Kd", self.kd), ("Ks", self.ks), ("Ke", self.ke))
+        ]
         lines += [f"Ni {self.ni:g}", f"Ns {self.ns:g}", "illum 2"]
-        maps = (("map_Kd", self.map_kd), ("map_d", self.map_d), ("map_Bump", self.map_bump), ("map_Ke", self.map_ke))
+        maps = (
+            ("map_Kd", self.map_kd),
+            ("map_d", self.map_d),
+            ("map_Bump", self.map_bump),
+            ("map_Ke", self.map_ke),
+        )
         lines += [f"{key} {value}" for key, value in maps if value is not None]
         return "\n".join(lines) + "\n"
 
@@ -85,10 +93,12 @@ class Model:
                     first[2] += len(mesh.normals)
                     slots = "%d/%d/%d" if mesh.uvs is not None else "%d//%d"
                 corners = np.stack(columns, 2).reshape(len(mesh.faces), -1)
-                out.write(("f " + " ".join([slots] * 3) + "\n") * len(corners) % tuple(corners.ravel().tolist()))
+                out.write(
+                    ("f " + " ".join([slots] * 3) + "\n") * len(corners) % tuple(corners.ravel().tolist())
+                )
 
 
-def _write_rows(out, key: str, rows: np.ndarray) -> None:  # type: ignore[no-untyped-def, type-arg]
+def _write_rows(out: TextIO, key: str, rows: Floats) -> None:
     line = key + " %.7g" * rows.shape[1] + "\n"
     out.write(line * len(rows) % tuple(rows.ravel().tolist()))
 
