@@ -36,7 +36,8 @@ ParameterValue converted(const Parameter& declared, ParameterValue given) {
 
 }  // namespace
 
-Parameters::Parameters(std::vector<Parameter> declared, const std::map<std::string, ParameterValue>& given) {
+Parameters::Parameters(const std::vector<Parameter>& declared,
+                       const std::map<std::string, ParameterValue>& given) {
     for (const Parameter& p : declared) {
         const auto it = given.find(p.name);
         values_[p.name] = it == given.end() ? p.default_value : converted(p, it->second);

@@ -30,7 +30,7 @@ struct Parameter {
 /// Values by name; what is not given has the default of its declaration.
 class Parameters {
   public:
-    Parameters(std::vector<Parameter> declared, const std::map<std::string, ParameterValue>& given);
+    Parameters(const std::vector<Parameter>& declared, const std::map<std::string, ParameterValue>& given);
 
     template <class T>
     T get(const std::string& name) const {

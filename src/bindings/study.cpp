@@ -191,6 +191,7 @@ void bind_light(nb::module_& m) {
 
 std::vector<PythonLight> lights_of(const std::shared_ptr<Scene>& scene) {
     std::vector<PythonLight> lights;
+    lights.reserve(scene->lights().size());
     for (size_t i = 0; i < scene->lights().size(); ++i) lights.push_back({scene, i});
     return lights;
 }
@@ -276,9 +277,12 @@ auto over_arrays(Weight weight) {
 }
 
 void bind_weights(nb::module_& m) {
-    m.def("light_sampling_weight", over_arrays(&light_sampling_weight), nb::arg("mis"), nb::arg("light_pdf"), nb::arg("bsdf_pdf"),
-          "mis: \"power\", \"balance\" or \"none\". float32 (n,), (n,) -> (n,): weight of a light sample, light_pdf > 0.");
-    m.def("bsdf_sampling_weight", over_arrays(&bsdf_sampling_weight), nb::arg("mis"), nb::arg("bsdf_pdf"), nb::arg("light_pdf"),
+    m.def("light_sampling_weight", over_arrays(&light_sampling_weight), nb::arg("mis"), nb::arg("light_pdf"),
+          nb::arg("bsdf_pdf"),
+          "mis: \"power\", \"balance\" or \"none\". float32 (n,), (n,) -> (n,): weight of a light sample, "
+          "light_pdf > 0.");
+    m.def("bsdf_sampling_weight", over_arrays(&bsdf_sampling_weight), nb::arg("mis"), nb::arg("bsdf_pdf"),
+          nb::arg("light_pdf"),
           "The counterpart: weight of a light that a BSDF sample's ray found, bsdf_pdf > 0.");
 }
 

@@ -72,7 +72,7 @@ class Renderer {
     uint32_t tiles_x_, tiles_y_;
     std::atomic<bool> stop_ = false;
     std::atomic<uint64_t> rays_ = 0, samples_done_ = 0, invalid_count_ = 0;
-    double seconds_ = 0;
+    std::atomic<double> seconds_ = 0;
     mutable std::mutex invalid_mutex_;
     std::vector<InvalidSample> invalid_;
 };

@@ -120,11 +120,8 @@ def _ribbon(path: Floats, section: Floats) -> Mesh:
     mesh = surface(
         lambda u, v: rows[np.rint(v * (n - 1)).astype(int), np.rint(u * (m - 1)).astype(int)], m - 1, n - 1
     )
-    volume = np.einsum(
-        "ij,ij->",
-        np.cross(*(mesh.vertices[mesh.faces[:, k]] for k in (0, 1))),
-        mesh.vertices[mesh.faces[:, 2]],
-    )
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    volume = float((np.cross(a, b) * c).sum())
     mesh = mesh if volume > 0 else mesh.flipped()
     return welded(mesh.smooth(50))
 

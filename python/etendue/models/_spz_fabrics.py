@@ -64,7 +64,7 @@ def _banner(ground: tuple[float, float, float], emblem: Callable[[Field, Field],
     u, v = grid(SHAPE)
     x, y = u * 1.1, v * 3.2
     side = np.minimum(np.minimum(x, 1.1 - x), np.minimum(y, 3.2 - y))
-    g = np.float32(ground)
+    g = np.array(ground, np.float32)
     colour = mix(g, g * 1.45 + 0.01, _ogee(x * 3.6, y * 2.4))
     gold = np.maximum(step(0.012, 0.008, np.abs(side - 0.055)), step(0.007, 0.004, np.abs(side - 0.085)))
     for centre, size in ((2.35, 0.33), (0.85, 0.2)):
@@ -80,7 +80,7 @@ def _banner(ground: tuple[float, float, float], emblem: Callable[[Field, Field],
             step(0.008, 0.004, np.abs(np.abs(y - centre) - 0.035 - 0.018 * np.sin(x / 1.1 * 2 * np.pi * 8))),
         )
     stitch = 1 + 0.25 * np.sin((x + y) * 260)
-    return _woven(mix(colour, np.float32(GOLD) * stitch[..., None], gold))
+    return _woven(mix(colour, np.array(GOLD, np.float32) * stitch[..., None], gold))
 
 
 def _lily(a: Field, b: Field) -> Field:
@@ -125,7 +125,7 @@ def _carpet(field: tuple[float, float, float], border: tuple[float, float, float
     colour = np.where((side < 0.24)[..., None], band, colour)
     lines = np.maximum(step(0.010, 0.006, np.abs(side - 0.24)), step(0.010, 0.006, np.abs(side - 0.06)))
     colour = mix(colour, CREAM, lines)
-    colour = np.where((side < 0.05)[..., None], np.float32(field), colour)
+    colour = np.where((side < 0.05)[..., None], np.array(field, np.float32), colour)
     return _woven(colour)
 
 
@@ -133,7 +133,7 @@ def leaves(folder: Path, size: int = 512) -> None:
     """A twig of lemon leaves, its tip at the top of the picture, with the mask that cuts it out."""
     u, v = grid((size, size))
     fine = cloud((size, size), 91, 1.2, 8, 200)
-    colour = np.broadcast_to(np.float32([0.045, 0.10, 0.022]), (size, size, 3)).copy()
+    colour = np.broadcast_to(np.array([0.045, 0.10, 0.022], np.float32), (size, size, 3)).copy()
     mask = step(0.012, 0.006, np.abs(u - 0.5 - 0.02 * np.sin(5 * v))) * (v < 0.8)
     colour = mix(colour, (0.09, 0.075, 0.03), mask)
     rng = np.random.default_rng(92)
@@ -148,13 +148,13 @@ def leaves(folder: Path, size: int = 512) -> None:
         half = 0.205 * np.sin(np.pi * np.clip(along, 0, 1) ** 0.82) ** 0.85
         inside = step(0.01, -0.01, np.abs(bend) - half) * (along > 0) * (along < 1)
         tone = rng.random()
-        green = np.float32([0.035 + 0.07 * tone, 0.105 + 0.10 * tone, 0.014 + 0.012 * tone])
+        green = np.array([0.035 + 0.07 * tone, 0.105 + 0.10 * tone, 0.014 + 0.012 * tone], np.float32)
         veins = np.exp(-np.abs(bend) / 0.012) + 0.5 * np.exp(
             -np.abs((along - 1.3 * np.abs(bend)) * 9 % 1 - 0.5) / 0.06
         ) * (np.abs(bend) < half)
         leaf = green * (1 + 0.12 * fine + 0.35 * step(0.2, -0.2, bend))[..., None] + 0.05 * veins[
             ..., None
-        ] * np.float32([0.9, 1.2, 0.4])
+        ] * np.array([0.9, 1.2, 0.4], np.float32)
         colour = mix(colour, leaf, inside)
         mask = np.maximum(mask, inside)
     save(folder / "leaves.png", colour)
@@ -165,7 +165,7 @@ def majolica(folder: Path, shape: tuple[int, int] = (512, 1024)) -> None:
     """Tin-glazed ware, cobalt and ochre on white, for turned vases: u around, v up."""
     u, v = grid(shape)
     brush = cloud(shape, 95, 1.3, 4, 200)
-    colour = np.broadcast_to(np.float32([0.66, 0.65, 0.60]), (*shape, 3)).copy()
+    colour = np.broadcast_to(np.array([0.66, 0.65, 0.60], np.float32), (*shape, 3)).copy()
     vine = _ogee(u * 8 + 0.02 * brush, v * 4 + 0.02 * brush)
     zone = step(0.28, 0.30, v) * step(0.80, 0.78, v)
     colour = mix(colour, (0.025, 0.06, 0.26), vine * zone * (0.8 + 0.15 * brush))

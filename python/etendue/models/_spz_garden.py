@@ -187,7 +187,10 @@ def _hanging_bowls(rng: np.random.Generator) -> Parts:
 def _well() -> Parts:
     """An eight-sided well head on two steps, with a yoke, a pulley, a chain and a bucket."""
     x, z = WELL
-    eight = lambda profile, turn=22.5: planar(spun(profile, 8, 1.0, 10).turned("y", turn), 2.0)  # noqa: E731
+
+    def eight(profile: list[tuple[float, float]]) -> Mesh:
+        return planar(spun(profile, 8, 1.0, 10).turned("y", 22.5), 2.0)
+
     steps = [
         (0.0, 0.0),
         (1.45, 0.0),

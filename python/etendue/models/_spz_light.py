@@ -56,7 +56,8 @@ def _dome() -> Mesh:
         u = (around[0] + (around[1] - around[0]) * mesh.uvs[:, 0]) / 360
         v = (up[0] + (up[1] - up[0]) * mesh.uvs[:, 1] - LOWEST) / (90 - LOWEST)
         mesh = Mesh(mesh.vertices, mesh.faces, mesh.normals, np.stack([u, v], 1))
-        inwards = np.einsum("ij,ij->", mesh.vertices - [0, EYE, 0], mesh.normals) < 0
+        assert mesh.normals is not None
+        inwards = float(((mesh.vertices - [0, EYE, 0]) * mesh.normals).sum()) < 0
         corners = mesh.vertices[mesh.faces]
         area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         mesh = Mesh(mesh.vertices, mesh.faces[area > 1e-3], mesh.normals, mesh.uvs)  # none at the zenith

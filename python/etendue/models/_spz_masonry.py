@@ -40,7 +40,7 @@ def bricks(folder: Path, size: int = 1024) -> None:
     colour = mix((0.40, 0.205, 0.13), (0.50, 0.31, 0.20), step(-1.6, 1.8, tone))
     colour = mix(colour, (0.22, 0.115, 0.09), step(0.88, 0.93, burnt) * 0.75)
     colour *= (1 + 0.07 * rough + 0.08 * slow)[..., None]
-    mortar = np.float32([0.50, 0.45, 0.375]) * (1 + 0.06 * rough + 0.07 * slow)[..., None]
+    mortar = np.array([0.50, 0.45, 0.375], np.float32) * (1 + 0.06 * rough + 0.07 * slow)[..., None]
     colour = mix(mortar, colour, face)
     bleached = step(0.7, 2.2, slow + 0.25 * rough)
     save(folder / "bricks.png", mix(colour, (0.56, 0.49, 0.40), 0.45 * bleached))
@@ -135,7 +135,7 @@ def paving(folder: Path, height: int = 1280) -> None:
     colour[band] = _squares(
         x[band], z[band], 1.7, 55, lozenges=False, pair=((0.50, 0.465, 0.41), (0.53, 0.49, 0.43))
     )
-    colour[dark] *= np.float32([0.42, 0.42, 0.43])
+    colour[dark] *= np.array([0.42, 0.42, 0.43], np.float32)
     worn = step(-0.5, 2.2, slow + 0.2 * fine)
     colour *= (1 - 0.38 * 0.55 * worn + 0.035 * fine + 0.05 * slow)[..., None]
     damp = step(-0.55, 0.0, ring) * (ring < 0) * np.float32(0.25)
@@ -156,7 +156,11 @@ def _squares(x: Field, z: Field, size: float, seed: int, lozenges: bool,
     if lozenges:
         diamond = (0.34 - np.abs(fa - 0.5) - np.abs(fb - 0.5)) * size
         set_in = step(-0.004, 0.004, diamond)
-        colour = mix(colour, np.where(odd[..., None] > 0.5, np.float32(CREAM), np.float32(SLATE)), set_in)
+        colour = mix(
+            colour,
+            np.where(odd[..., None] > 0.5, np.array(CREAM, np.float32), np.array(SLATE, np.float32)),
+            set_in,
+        )
         edge = np.minimum(edge, np.abs(diamond) * 1.4)
     colour *= tone[i % 64, j % 64][..., None]
     return mix((0.12, 0.105, 0.09), colour, step(0.002, 0.010, edge))

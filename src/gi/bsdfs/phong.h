@@ -31,7 +31,8 @@ struct Phong : Bsdf {
     /// A half vector with density (n + 1) / (2 pi) cos^n, and wo mirrored at it.
     static std::optional<BsdfSample> sample(const Surface& surface, const vec3& wo, float, const vec2& u) {
         const float n = exponent(surface);
-        const float sin2 = -std::expm1(2 / (n + 1) * std::log1p(-u.x)), sin = std::sqrt(sin2), phi = 2 * PI * u.y;
+        const float sin2 = -std::expm1(2 / (n + 1) * std::log1p(-u.x)), sin = std::sqrt(sin2),
+                    phi = 2 * PI * u.y;
         const vec3 h(sin * std::cos(phi), sin * std::sin(phi), safe_sqrt(1 - sin2));
         const vec3 wi = Ggx::mirrored(wo, h);
         if (wi.z <= 0 || glm::dot(wo, h) <= 0) return std::nullopt;
