@@ -6,6 +6,7 @@ scene = etendue.load("configs/a04_box.json")
 film = scene.render(spp=64, algorithm="Pathtracer", mis="balance")
 film.image                      # float32 (height, width, 3), linear radiance, row 0 at the top
 film.save("box.exr")
+film.write("box.film.exr")      # etendue.read_film reads it, scene.render(resume=film) goes on from it
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from .display import tonemap
     from .errors import EtendueError, Problem, SceneError
     from .film import Film
+    from .film_file import read as read_film
+    from .merging import merge
     from .scene import Scene, load
 
     __version__: str
@@ -30,7 +33,9 @@ __all__ = [
     "SceneError",
     "__version__",
     "load",
+    "merge",
     "read_config",
+    "read_film",
     "tonemap",
 ]
 
@@ -42,9 +47,13 @@ _HOME = {
     "Problem": "errors",
     "SceneError": "errors",
     "Film": "film",
+    "merge": "merging",
+    "read_film": "film_file",
     "Scene": "scene",
     "load": "scene",
 }
+
+_ALIASED = {"read_film": "read"}
 
 
 def __getattr__(name: str) -> Any:
@@ -55,7 +64,7 @@ def __getattr__(name: str) -> Any:
         return _version()
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
+    value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), _ALIASED.get(name, name))
     globals()[name] = value
     return value
 

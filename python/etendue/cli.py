@@ -118,7 +118,15 @@ Settings = Annotated[
 @app.command()
 @_reported
 def render(
-    config: ConfigFile,
+    context: typer.Context,
+    config: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="CONFIG",
+            help="The scene file (JSON); with --resume not needed.",
+            show_default=False,
+        ),
+    ] = None,
     output: Annotated[
         list[str] | None,
         typer.Option(
@@ -166,6 +174,39 @@ def render(
     ] = None,
     data: DataFolders = None,
     settings: Settings = None,
+    film: Annotated[
+        Path | None,
+        typer.Option(
+            "--film",
+            metavar="FILE",
+            help="Also keep the film there: an EXR with all that it takes to go on from it, as box.film.exr.",
+        ),
+    ] = None,
+    checkpoint: Annotated[
+        float | None,
+        typer.Option(
+            "--checkpoint",
+            metavar="S",
+            help="Seconds of rendering between two writings of the film.  [default: 30]",
+        ),
+    ] = None,
+    resume: Annotated[
+        Path | None,
+        typer.Option(
+            "--resume",
+            metavar="FILM",
+            help="Go on from a film, with the scene and the settings that it carries, and write it back "
+            "there, or to --film.",
+        ),
+    ] = None,
+    samples: Annotated[
+        str | None,
+        typer.Option(
+            "--samples",
+            metavar="A:B",
+            help="Render the samples with the indices from A to B - 1 of every pixel, for etendue merge.",
+        ),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object about the render on the standard output.")
     ] = False,
@@ -173,9 +214,11 @@ def render(
         bool, typer.Option("--quiet", "-q", help="No progress and no messages but errors.")
     ] = False,
 ) -> None:
-    """Render a scene file to images."""
-    from . import render_command
+    """Render a scene file to images, or go on from a film."""
+    from . import render_command, resuming, sample_ranges
 
+    if config is None and resume is None:
+        context.fail("Missing argument 'CONFIG', or --resume and a film.")
     _require_folders(data)
     if threads < 0:
         raise EtendueError(
@@ -183,13 +226,124 @@ def render(
         )
     if time is not None and not 0 < time < float("inf"):
         raise EtendueError(f"--time: a number of seconds above 0 is needed, not {time:g}")
+    if checkpoint is not None and film is None and resume is None:
+        raise EtendueError("--checkpoint: there is no film to write; --film names one")
+    if checkpoint is not None and not 0 < checkpoint < float("inf"):
+        raise EtendueError(f"--checkpoint: a number of seconds above 0 is needed, not {checkpoint:g}")
+    if samples is not None and (spp is not None or resume is not None):
+        other = "--spp" if spp is not None else "--resume"
+        raise EtendueError(f"--samples: excludes {other}; films of other samples are put together by merge")
     overrides = render_command.overrides_of(algorithm, spp, size, seed, settings or [])
     job = render_command.Job(
-        config, overrides, tuple(data or ()), tuple(output or ()), threads, time, as_json, quiet
+        config,
+        overrides,
+        tuple(data or ()),
+        tuple(output or ()),
+        threads,
+        time,
+        as_json,
+        quiet,
+        film,
+        resuming.CHECKPOINT if checkpoint is None else checkpoint,
+        resume,
+        spp,
+        None if samples is None else sample_ranges.parse(samples),
     )
     code = render_command.run(job)
     if code:
         raise typer.Exit(code)
+
+
+@app.command(short_help="Add up films of different samples.")
+@_reported
+def merge(
+    parts: Annotated[
+        list[Path], typer.Argument(metavar="PART", help="Films of one scene.", show_default=False)
+    ],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="FILE", help="Where the film of all samples goes (.exr)."),
+    ],
+) -> None:
+    """Add up films of different samples of one scene, rendered with --samples, to the film of all of them."""
+    from . import film_commands
+
+    print(film_commands.merge(parts, output))
+
+
+def _view_names() -> list[str]:
+    from .views import VIEWS
+
+    return list(VIEWS)
+
+
+def _quantity_names() -> list[str]:
+    from .false_colour import QUANTITIES
+
+    return list(QUANTITIES)
+
+
+@app.command(short_help="Show a film as PNG or JPEG.")
+@_reported
+def tonemap(
+    film: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILM", help="A film, or another linear image (.exr, .hdr).", show_default=False
+        ),
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="Where the image goes: .png or .jpg.")
+    ],
+    exposure: Annotated[
+        float | None,
+        typer.Option(
+            "--exposure",
+            metavar="E",
+            help="Factor on the radiance. Without it: the scene file's framebuffer.exposure.",
+        ),
+    ] = None,
+    view: Annotated[
+        str | None,
+        typer.Option(
+            "--view",
+            metavar="NAME",
+            autocompletion=_view_names,
+            help="How bright radiance is fitted to a screen: srgb clips it, reinhard, hable, aces and agx "
+            "roll it off.  [default: srgb]",
+        ),
+    ] = None,
+    false_colour: Annotated[
+        str | None,
+        typer.Option(
+            "--false-colour",
+            metavar="NAME",
+            autocompletion=_quantity_names,
+            help="Instead of the image, show its variance, relative-error or samples in false colours.",
+        ),
+    ] = None,
+    scale: Annotated[
+        str | None,
+        typer.Option(
+            "--scale",
+            metavar="A:B",
+            help="The values of the darkest and the lightest false colour. Without it: 98% of the pixels "
+            "are between them.",
+        ),
+    ] = None,
+) -> None:
+    """Show a film, or another linear image, as a PNG or JPEG file."""
+    from . import film_commands
+
+    if false_colour is not None:
+        wrong = "--exposure" if exposure is not None else "--view" if view is not None else None
+        if wrong:
+            raise EtendueError(f"{wrong}: without effect on --false-colour")
+        film_commands.false_colour(film, output, false_colour, scale)
+        return
+    if scale is not None:
+        raise EtendueError("--scale: without effect but on --false-colour")
+    film_commands.tonemap(film, output, exposure, view or "srgb")
 
 
 @app.command(short_help="Check a scene file: problems, contents, time.")

@@ -7,6 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import EtendueError, nearest_name
+
+# What counts as infinite: above all that is rendered, and far from where the curves overflow.
+BRIGHTEST = 1e9
+
 
 def linear_to_srgb(linear: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
     """The sRGB transfer function (IEC 61966-2-1) of `linear`, of any shape; values below 0 count as 0."""
@@ -22,12 +27,20 @@ def srgb_to_linear(encoded: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4).astype(np.float32)
 
 
-def tonemap(image: NDArray[np.floating[Any]], exposure: float = 1.0) -> NDArray[np.uint8]:
-    """`image`, linear radiance of any shape, times `exposure`, clipped to 0..1, as 8-bit sRGB, rounded.
+def tonemap(image: NDArray[np.floating[Any]], exposure: float = 1.0, view: str = "srgb") -> NDArray[np.uint8]:
+    """`image`, linear radiance (..., 3), times `exposure`, through one of `VIEWS`, as 8-bit sRGB, rounded.
 
-    Infinity is white, NaN black.
+    Infinity is as bright as can be, NaN black. For "srgb", which is clipped to 0..1, `image` may be of any
+    shape. Raises EtendueError for another view.
     """
-    exposed = np.nan_to_num(
-        np.asarray(image, np.float32) * np.float32(exposure), nan=0.0, posinf=1.0, neginf=0.0
-    )
-    return np.rint(linear_to_srgb(np.clip(exposed, 0, 1)) * 255).astype(np.uint8)
+    from . import views
+
+    if view not in views.VIEWS:
+        near = nearest_name(view, views.VIEWS)
+        hint = f'did you mean "{near}"? ' if near else ""
+        raise EtendueError(f'there is no view "{view}" ({hint}allowed: {", ".join(views.VIEWS)})')
+    with np.errstate(over="ignore"):
+        exposed = np.asarray(image, np.float32) * np.float32(exposure)
+    finite = np.clip(np.nan_to_num(exposed, nan=0.0, posinf=BRIGHTEST, neginf=0.0), 0, BRIGHTEST)
+    encoded = views.VIEWS[view](finite)
+    return np.rint(np.clip(encoded, 0, 1) * 255).astype(np.uint8)

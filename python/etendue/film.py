@@ -1,4 +1,4 @@
-"""What a render gives: the image, how it came about, and files of it."""
+"""What a render gives: the image, the sums behind it, how it came about, and files of it."""
 
 from __future__ import annotations
 
@@ -16,18 +16,36 @@ from numpy.typing import NDArray
 from . import outputs
 from .display import tonemap
 from .errors import EtendueError, nearest_name
+from .sample_ranges import Range, count, hull
 
 if TYPE_CHECKING:
-    from ._core import Renderer
+    from .origin import Origin
 
 _LINEAR, _DISPLAY = (".exr", ".hdr"), (".png", ".jpg", ".jpeg")
 _JPEG_QUALITY = 95
+MOST_INVALID_LISTED = 1000
 Attribute = str | int | float
+
+
+def mean_of(
+    total: NDArray[np.float64], sample_count: NDArray[np.uint64], invalid: NDArray[np.uint64]
+) -> NDArray[np.float32]:
+    """float32 (height, width, 3): the mean of the valid samples; 0 where there is none."""
+    valid = (sample_count - invalid)[..., None].astype(np.float64)
+    return np.divide(total, valid, out=np.zeros_like(total), where=valid > 0).astype(np.float32)
+
+
+def _nothing() -> NDArray[Any]:
+    return np.zeros((0, 0, 3))
+
+
+def _no_counts() -> NDArray[Any]:
+    return np.zeros((0, 0), np.uint64)
 
 
 @dataclass
 class Film:
-    """The result of `Scene.render`.
+    """The result of `Scene.render`, of `read_film` and of `merge`.
 
     image: float32 (height, width, 3), mean linear radiance, row 0 at the top; 0 where there is no sample yet.
     sample_count: uint64 (height, width), samples taken in each pixel.
@@ -37,6 +55,11 @@ class Film:
     complete: whether every pixel has the samples asked for. interrupted: whether Ctrl-C is why not.
     exposure: factor for display, by default that of the scene file.
     attributes: how the image was made, written into EXR files.
+    half_sum: float64 (height, width, 3), of the valid samples of even index: half of an independent pair.
+    invalid_per_pixel: uint64 (height, width), samples that are counted and not in the sums.
+    ranges: the [first, end) of sample indices that every pixel has. partial: a range behind one of them that
+    only some pixels have, each from its beginning on. goal: the range that the render was to fill.
+    origin: the scene and the settings; None for a film that no render gave.
     """
 
     image: NDArray[np.float32]
@@ -51,19 +74,23 @@ class Film:
     interrupted: bool = False
     exposure: float = 1.0
     attributes: dict[str, Attribute] = field(default_factory=dict)
+    half_sum: NDArray[np.float64] = field(default_factory=_nothing)
+    invalid_per_pixel: NDArray[np.uint64] = field(default_factory=_no_counts)
+    ranges: list[Range] = field(default_factory=list)
+    partial: Range | None = None
+    goal: Range = (0, 0)
+    origin: Origin | None = None
 
     @classmethod
-    def of(cls, renderer: Renderer, **how: Any) -> Film:
-        """The film of a renderer as it stands; `how` gives the fields that the renderer does not know."""
+    def empty(cls, width: int, height: int, **how: Any) -> Film:
+        """A film without samples."""
         return cls(
-            renderer.mean(),
-            renderer.sample_count(),
-            renderer.sum(),
-            renderer.sum_squares(),
-            renderer.rays,
-            renderer.seconds,
-            list(renderer.invalid),
-            renderer.invalid_count,
+            np.zeros((height, width, 3), np.float32),
+            np.zeros((height, width), np.uint64),
+            np.zeros((height, width, 3)),
+            np.zeros((height, width, 3)),
+            half_sum=np.zeros((height, width, 3)),
+            invalid_per_pixel=np.zeros((height, width), np.uint64),
             **how,
         )
 
@@ -78,6 +105,20 @@ class Film:
         return self.samples / self.sample_count.size
 
     @property
+    def held(self) -> list[Range]:
+        """All samples that the film has something of: `ranges` and `partial`."""
+        return [*self.ranges, *([self.partial] if self.partial else [])]
+
+    @property
+    def missing(self) -> int:
+        """Samples per pixel that the goal asks for and not every pixel has."""
+        return self.goal[1] - self.goal[0] - count(self.ranges)
+
+    def towards(self, goal: Range) -> Range:
+        """`goal`, made large enough for what the film has already."""
+        return hull([goal, *self.held])
+
+    @property
     def variance(self) -> NDArray[np.float32]:
         """float32 (height, width, 3): estimated variance of one sample of each pixel; NaN below two samples.
 
@@ -88,17 +129,28 @@ class Film:
             spread = (self.sum_squares - self.sum**2 / count) / (count - 1)
         return np.where(count > 1, np.maximum(spread, 0), np.nan).astype(np.float32)
 
-    def tonemapped(self, exposure: float | None = None) -> NDArray[np.uint8]:
-        """uint8 (height, width, 3): the exposed image in sRGB."""
-        return tonemap(self.image, self.exposure if exposure is None else exposure)
+    def tonemapped(self, exposure: float | None = None, view: str = "srgb") -> NDArray[np.uint8]:
+        """uint8 (height, width, 3): the exposed image through a view of `display.VIEWS`, in sRGB."""
+        return tonemap(self.image, self.exposure if exposure is None else exposure, view)
+
+    def write(self, path: str | PathLike[str]) -> None:
+        """Write the film file: an EXR image, and all that it takes to go on from it and to merge it.
+
+        A file that is there before is replaced once the new one is whole. Raises EtendueError for whatever
+        keeps the file from being written.
+        """
+        from . import film_file
+
+        film_file.write(self, Path(path))
 
     def save(
         self,
         path: str | PathLike[str],
         exposure: float | None = None,
         attributes: Mapping[str, Attribute] | None = None,
+        view: str = "srgb",
     ) -> None:
-        """Write the image: .exr (float32) and .hdr linear, .png and .jpg exposed in 8-bit sRGB.
+        """Write the image: .exr (float32) and .hdr linear, .png and .jpg exposed, through `view`, in sRGB.
 
         EXR files carry `self.attributes` and the given ones. A file that is there before is replaced once the
         new one is whole. Raises EtendueError for an unknown extension and for whatever keeps the file from
@@ -111,10 +163,17 @@ class Film:
             hint = f'did you mean "{near}"? ' if near else ""
             allowed = ", ".join((*_LINEAR, *_DISPLAY))
             raise EtendueError(f'{file}: unknown kind of image "{file.suffix}" ({hint}allowed: {allowed})')
-        pixels = self.image if suffix in _LINEAR else self.tonemapped(exposure)
+        pixels = self.image if suffix in _LINEAR else self.tonemapped(exposure, view)
         notes = {**self.attributes, **(attributes or {})} if suffix == ".exr" else {}
-        data = _encoded(file, pixels, notes)
-        outputs.write(file, lambda temporary: _store(temporary, data))
+        save_pixels(file, pixels, notes)
+
+
+def save_pixels(
+    file: Path, pixels: NDArray[np.float32] | NDArray[np.uint8], attributes: Mapping[str, Attribute]
+) -> None:
+    """Write (height, width, 3) pixels, float32 as linear and uint8 as sRGB; raises EtendueError."""
+    data = _encoded(file, pixels, attributes)
+    outputs.write(file, lambda temporary: _store(temporary, data))
 
 
 def _store(path: Path, data: bytes) -> None:

@@ -17,11 +17,15 @@ Report = Callable[[float, float], None]
 
 @dataclass(frozen=True)
 class Goal:
-    """What a render is to reach: samples in each of the pixels, or the time limit in seconds before that."""
+    """What a render is to reach: samples in each of the pixels, or the time limit in seconds before that.
+
+    spp_before: samples that were there when it began, which cost it no time.
+    """
 
     spp: int
     pixels: int
     time_limit: float | None = None
+    spp_before: float = 0.0
 
     def part(self, fraction: float, seconds: float) -> float:
         """How much is done (0..1): of the samples, or of the time, whichever will end the render."""
@@ -30,13 +34,20 @@ class Goal:
         # Time that has run out does not mean that the last samples are in.
         return max(fraction, min(seconds / self.time_limit, 0.999))
 
+    def part_here(self, fraction: float, seconds: float) -> float:
+        """As `part`, of what was left to do at the beginning."""
+        before = self.spp_before / self.spp
+        return self.part((fraction - before) / (1 - before) if before < 1 else 1.0, seconds)
+
     def describe(self, fraction: float, spp_done: float, seconds: float) -> tuple[str, str, str, str]:
         """Percent, samples, speed and time left, in words; 100% is said of what is finished alone."""
         part = self.part(fraction, seconds)
         percent = f"{min(int(part * 100), 100 if part >= 1 else 99)}%"
         samples = f"{spp_done:.{0 if spp_done == int(spp_done) else 1}f}/{self.spp} spp"
-        speed = f"{si(spp_done * self.pixels / seconds)} samples/s" if seconds > 0 and spp_done > 0 else ""
-        left = f"{clock(seconds * (1 - part) / part)} left" if 0 < part < 1 else ""
+        spp_here = spp_done - self.spp_before
+        speed = f"{si(spp_here * self.pixels / seconds)} samples/s" if seconds > 0 and spp_here > 0 else ""
+        part_here = self.part_here(fraction, seconds)
+        left = f"{clock(seconds * (1 - part_here) / part_here)} left" if 0 < part_here < 1 else ""
         return percent, samples, speed, left
 
 

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import sample_ranges
 from .config import Config, read_config
 from .config_overrides import Override
 from .errors import EtendueError, Problem, SceneError
-from .film import Attribute, Film
+from .film import Film
+from .origin import Origin
+from .progressive import Progress, Steps, go_on
+from .sample_ranges import Range
 
 if TYPE_CHECKING:
     from . import _core
+    from .fingerprint import Contents
 
-# Called with the part that is done (0..1) and the samples per pixel so far.
-Progress = Callable[[float, float], object]
 _SECTIONS = ("framebuffer", "camera", "scene")
 
 
@@ -28,6 +31,7 @@ class Scene:
 
     config: the scene file. core: the compiled core's scene. focal_depth: the camera's, after auto focus.
     warnings: what will not look as its author may expect. load_seconds: time that loading took.
+    contents: name and digest of what files brought in. data_dirs: folders in which they were looked for.
     """
 
     config: Config
@@ -35,6 +39,8 @@ class Scene:
     focal_depth: float
     warnings: list[Problem] = field(default_factory=list)
     load_seconds: float = 0.0
+    contents: Contents = field(default_factory=dict)
+    data_dirs: tuple[str | PathLike[str], ...] = ()
 
     @property
     def lights(self) -> list[_core.Light]:
@@ -54,6 +60,10 @@ class Scene:
         seed: int | None = None,
         time_limit: float | None = None,
         progress: Progress | None = None,
+        samples: Sequence[int] | None = None,
+        resume: Film | None = None,
+        checkpoint: Callable[[Film], object] | None = None,
+        checkpoint_seconds: float = 30.0,
         **parameters: Any,
     ) -> Film:
         """Render the scene.
@@ -65,17 +75,61 @@ class Scene:
         progress(fraction, samples_per_pixel): called about 20 times a second; an exception from it ends the
         render and is raised.
 
-        Ctrl-C returns the film with what is done and `film.interrupted` set, and raises KeyboardInterrupt
-        only where nothing is done yet. Raises SceneError for a value that is not allowed.
-        """
-        from . import _core
+        samples: instead of spp, the samples with the indices [first, end), or a range of step 1; films of
+        different ones can be merged. resume: a film of this scene and these settings to go on from, which
+        itself stays as it is; without spp, to where it was to go.
+        checkpoint(film): called every checkpoint_seconds with the film so far.
 
-        config = self._changed(spp, size, algorithm, seed, parameters)
+        Ctrl-C returns the film with what is done and `film.interrupted` set, and raises KeyboardInterrupt
+        only where nothing is done yet. Raises SceneError for a value that is not allowed, EtendueError for
+        a film to resume that is of something else, with all that differs.
+        """
+        goal = self._goal(spp, samples, resume)
+        wanted = goal[1] - goal[0] if goal else None
+        if wanted is not None and resume is not None:
+            # A merged film may have more than a scene file can ask for.
+            wanted = min(wanted, sample_ranges.MOST)
+        config = self._changed(wanted, size, algorithm, seed, parameters)
         if threads < 0:
             raise EtendueError(f"threads: 0 or a number of threads is needed, not {threads}")
+        if not checkpoint_seconds > 0:
+            raise EtendueError(f"checkpoint_seconds: above 0 is needed, not {checkpoint_seconds}")
+        origin = Origin.of(config, self.contents, self.data_dirs)
         framebuffer = config.framebuffer
+        if resume is None:
+            start = Film.empty(framebuffer.res_w, framebuffer.res_h)
+        elif resume.origin is None:
+            raise EtendueError("resume: a film that does not come from a render cannot be gone on from")
+        else:
+            refusal = "the film is of another scene or other settings"
+            origin.require_same(resume.origin, refusal, "here", "in the film")
+            start = resume
+        start = dataclasses.replace(
+            start, goal=goal or (0, framebuffer.sppx), origin=origin, exposure=framebuffer.exposure
+        )
+        steps = Steps(progress, checkpoint, checkpoint_seconds, time_limit)
+        film = go_on(start, lambda first: self._renderer(config, threads, first), steps)
+        if film.interrupted and film.samples == 0:
+            raise KeyboardInterrupt
+        return film
+
+    def _goal(self, spp: int | None, samples: Sequence[int] | None, resume: Film | None) -> Range | None:
+        """The range of samples to reach; None: what the scene file says."""
+        if samples is not None:
+            for other, name in ((spp, "spp"), (resume, "resume")):
+                if other is not None:
+                    raise EtendueError(f"render: samples and {name} exclude each other")
+            return sample_ranges.checked(samples, "samples")
+        if resume is None:
+            return None if spp is None else (0, int(spp))
+        first = resume.goal[0]
+        return resume.towards(resume.goal if spp is None else (first, first + int(spp)))
+
+    def _renderer(self, config: Config, threads: int, first_sample: int) -> _core.Renderer:
+        from . import _core
+
         try:
-            renderer = _core.Renderer(
+            return _core.Renderer(
                 self.core,
                 _camera(config, self.focal_depth),
                 config.algorithm,
@@ -84,24 +138,10 @@ class Scene:
                 config.filter,
                 config.seed,
                 threads,
+                first_sample,
             )
         except ValueError as error:
             raise EtendueError(str(error)) from error
-        interrupted = False
-        try:
-            complete = renderer.render(framebuffer.sppx, progress, time_limit)
-        except KeyboardInterrupt:
-            complete, interrupted = False, True
-        film = Film.of(
-            renderer,
-            complete=complete,
-            interrupted=interrupted,
-            exposure=framebuffer.exposure,
-        )
-        film.attributes = _attributes(config, film)
-        if interrupted and film.samples == 0:
-            raise KeyboardInterrupt
-        return film
 
     def _changed(
         self,
@@ -173,7 +213,8 @@ def load(
         focal_depth = _core.auto_focus(core, _camera(config, focal_depth))
     if warnings is not None:
         warnings += found
-    return Scene(config, core, focal_depth, found, time.perf_counter() - start)
+    seconds = time.perf_counter() - start
+    return Scene(config, core, focal_depth, found, seconds, parts.contents, tuple(data_dirs))
 
 
 def _camera(config: Config, focal_depth: float, size: tuple[int, int] | None = None) -> _core.Camera:
@@ -195,30 +236,3 @@ def _camera(config: Config, focal_depth: float, size: tuple[int, int] | None = N
         )
     except ValueError as error:
         raise SceneError([config.problem(("camera",), str(error))]) from error
-
-
-def _attributes(config: Config, film: Film) -> dict[str, Attribute]:
-    """How the film was made, for its file."""
-    import hashlib
-    import json
-
-    from . import __version__
-
-    text = json.dumps(config.data, ensure_ascii=False)
-    parameters = config.parameters()
-    return {
-        "version": __version__,
-        "scene": str(Path(config.path).name) if config.path else "",
-        "config": text,
-        "config_sha256": hashlib.sha256(text.encode()).hexdigest(),
-        "algorithm": config.algorithm,
-        "parameters": json.dumps(parameters),
-        "sampler": config.sampler,
-        "filter": config.filter,
-        "seed": config.seed,
-        "spp": float(film.spp),
-        "rays": film.rays,
-        "seconds": float(film.seconds),
-        "invalid_samples": film.invalid_count,
-        "complete": int(film.complete),
-    }

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from . import _core
+from . import _core, fingerprint
 from .config import Config
 from .errors import EtendueError, Problem, SceneError, nearest_name
 from .loaders.image import load_image
@@ -23,7 +24,7 @@ Result = TypeVar("Result")
 
 
 class Parts:
-    """Meshes, materials, textures and sky of a scene.
+    """Meshes, materials, textures and sky of a scene, and `contents`, the digests of all that files brought.
 
     Raises SceneError with the problems of all files at once. `warnings` says what was repaired or left out.
     """
@@ -36,6 +37,7 @@ class Parts:
         self.meshes: list[_core.Mesh] = []
         self.materials: list[_core.Material] = []
         self.sky: _core.Sky | None = None
+        self._environment: tuple[str, NDArray[np.float32]] | None = None
         files = self._mesh_files()
         self._read_sky()
         if not self._problems and not files and self.sky is None:
@@ -47,6 +49,7 @@ class Parts:
         self._textures = Textures(notes)
         self._add(files)
         self.textures = [_core.Texture(image.pixels, image.srgb) for image in self._textures.images]
+        self.contents = fingerprint.contents(files, self._textures.images, self._environment)
         self.warnings += [Problem(note) for note in notes]
 
     def _tried(self, loc: Loc, read: Callable[[], Result]) -> Result | None:
@@ -95,6 +98,7 @@ class Parts:
             if image is None:
                 return
             pixels = np.asarray(image.pixels, np.float32)
+            self._environment = name, pixels
             self.warnings += [Problem(note) for note in notes]
         self.sky = _core.Sky(pixels, sky.intensity, sky.scene_radius)
 

@@ -176,7 +176,7 @@ class TestObj:
             ),
             ("v 0 0 0\nv 1 nan 0\n", "mesh.obj:2: a vertex that is not finite: v 1 nan 0"),
             ("v 0 0 0\nv 1 inf 0\n", "mesh.obj:2: a vertex that is not finite: v 1 inf 0"),
-            ("v 0 0 0\nv 1e39 0 0\n", "mesh.obj:2: a vertex that is not finite: v 1e39 0 0"),
+            ("v 0 0 0\nv 1e39 0 0\n", "mesh.obj:2: a vertex that is too far away: v 1e39 0 0"),
             ("\nv 0 0\n", "mesh.obj:2: a vertex needs 3 numbers: v 0 0"),
             ("v 0 0 0\nv 1 2 zwei\n", "mesh.obj:2: not a number: v 1 2 zwei"),
             ("v 1 \\\n 2 3\nv 1 2 zwei\n", "mesh.obj:3: not a number: v 1 2 zwei"),
