@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from .display import tonemap
     from .errors import EtendueError, Problem, SceneError
     from .film import Film
-    from .film_file import read as read_film
-    from .merging import merge
+    from .film.file import read as read_film
+    from .film.merging import merge
     from .scene import Scene, load
 
     __version__: str
@@ -47,8 +47,8 @@ _HOME = {
     "Problem": "errors",
     "SceneError": "errors",
     "Film": "film",
-    "merge": "merging",
-    "read_film": "film_file",
+    "merge": "film.merging",
+    "read_film": "film.file",
     "Scene": "scene",
     "load": "scene",
 }

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from etendue import _core, cli, memory, models, progress
+from etendue import _core, cli, models
+from etendue.cli import memory, progress
 from etendue.errors import EtendueError
 from etendue.film import Film
 
@@ -535,6 +536,6 @@ def test_help_says_everything_in_words(etendue: Command) -> None:
 
 def test_help_is_quick() -> None:
     heavy = ("numpy", "pydantic", "OpenImageIO", "rich")
-    code = f"import sys, etendue.cli; print([name for name in {heavy} if name in sys.modules])"
+    code = f"import sys, etendue.cli.app; print([name for name in {heavy} if name in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "[]\n"

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from etendue import _core
 from etendue.config import Config, json_schema, read_config
-from etendue.config_overrides import Override
-from etendue.config_schema import all_keys, describe, node_at, resolve
+from etendue.config.overrides import Override
+from etendue.config.schema import all_keys, describe, node_at, resolve
 from etendue.errors import EtendueError, SceneError
 
 ALGORITHMS = ", ".join(info.name for info in _core.algorithms())
@@ -152,8 +152,8 @@ def test_all_problems_are_told_at_once(problems: Any) -> None:
 
 
 def test_numbers_that_single_precision_cannot_hold(problems: Any) -> None:
-    assert problems('{"camera": {"pos": [1e39, 0, 0]},\n"framebuffer": {"exposure": 1e-300}}') == [
-        "s.json:1: camera.pos[0]: too large for single precision (got 1e+39)",
+    assert problems('{"camera": {"dir": [1e39, 0, 1]},\n"framebuffer": {"exposure": 1e-300}}') == [
+        "s.json:1: camera.dir[0]: too large for single precision (got 1e+39)",
         "s.json:2: framebuffer.exposure: too small for single precision (got 1e-300)",
     ]
 
@@ -327,7 +327,7 @@ json_values = st.recursive(
 
 @given(json_values)
 def test_any_json_is_read_as_the_standard_parser_reads_it(value: Any) -> None:
-    from etendue.located_json import parse
+    from etendue.config.located_json import parse
 
     for text in (json.dumps(value, indent=1), json.dumps(value, ensure_ascii=False)):
         assert parse(text).value == json.loads(text)
@@ -335,7 +335,7 @@ def test_any_json_is_read_as_the_standard_parser_reads_it(value: Any) -> None:
 
 @given(st.text(alphabet='{}[]",:.0123e-+ \n\\trufalsn'))
 def test_anything_else_is_an_error_of_the_scene(text: str) -> None:
-    from etendue.located_json import parse
+    from etendue.config.located_json import parse
 
     try:
         value = json.loads(text)

@@ -16,8 +16,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import etendue
-from etendue import EtendueError, Film, Scene, film_file, film_replacing, sample_ranges
-from etendue.film import mean_of
+from etendue import EtendueError, Film, Scene
+from etendue.film import file as film_file
+from etendue.film import mean_of, sample_ranges
+from etendue.film import replacing as film_replacing
 
 ARRAYS = ("image", "sum", "sum_squares", "half_sum", "sample_count", "invalid_per_pixel")
 

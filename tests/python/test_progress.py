@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from etendue.progress import Goal, shown
+from etendue.cli.progress import Goal, shown
 
 
 def test_never_complete_before_it_is() -> None:

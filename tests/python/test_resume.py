@@ -17,9 +17,10 @@ import numpy as np
 import pytest
 
 import etendue
-from etendue import EtendueError, Film, cli, film_file
-from etendue.interrupts import Interrupts
-from etendue.progress import Goal
+from etendue import EtendueError, Film, cli
+from etendue.cli.interrupts import Interrupts
+from etendue.cli.progress import Goal
+from etendue.film import file as film_file
 
 FILM = "a.film.exr"
 # More samples than any test waits for.

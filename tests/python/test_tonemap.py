@@ -14,9 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import etendue
-from etendue import EtendueError, cli, false_colour
-from etendue.display import linear_to_srgb, srgb_to_linear, tonemap
-from etendue.views import VIEWS, _agx_curve, _agx_inset
+from etendue import EtendueError, cli
+from etendue.display import false_colour, linear_to_srgb, srgb_to_linear, tonemap
+from etendue.display.views import VIEWS, _agx_curve, _agx_inset
 
 GREY = np.array([0.18, 0.18, 0.18], np.float32)
 

@@ -12,6 +12,9 @@ from .types import Mesh
 
 Floats = NDArray[np.float64]
 
+#: coordinates beyond this are refused, as by the core, which squares areas in single precision
+FARTHEST = 1e9
+
 
 def normalised(vectors: NDArray[np.floating]) -> Floats:
     """Unit vectors, (n, 3); zero where the length is zero or not finite."""
@@ -65,11 +68,12 @@ def indexed_mesh(
     Normals and texture coordinates that do not fit the vertices are left out. Raises EtendueError.
     """
     triangles = np.asarray(triangles).reshape(-1, 3)
-    fits = np.asarray(np.abs(vertices) <= np.finfo(np.float32).max)
+    fits = np.asarray(np.abs(vertices) <= FARTHEST)
     bad = np.flatnonzero(~fits.all(axis=1))
     if len(bad):
         text = " ".join(f"{value:g}" for value in vertices[bad[0]])
-        raise EtendueError(f"{path}: vertex {bad[0]} is not finite: {text}")
+        what = "is not finite" if not np.isfinite(vertices[bad[0]]).all() else "is too far away"
+        raise EtendueError(f"{path}: vertex {bad[0]} {what}: {text}")
     wrong = np.flatnonzero(((triangles < 0) | (triangles >= len(vertices))).any(axis=1))
     if len(wrong):
         text = " ".join(map(str, triangles[wrong[0]]))

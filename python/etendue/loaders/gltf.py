@@ -83,10 +83,10 @@ def _pieces(
     from trimesh.scene.transforms import SceneGraph
 
     bare = {key: value for key, value in header.items() if key not in ("textures", "images", "materials")}
-    bare["materials"] = [{"name": str(number)} for number in range(len(header.get("materials", [])))]
-    text = json.dumps(bare).encode()
     resolver = FilePathResolver(str(path.resolve()))
     try:
+        bare["materials"] = [{"name": str(number)} for number in range(len(header.get("materials", [])))]
+        text = json.dumps(bare).encode()
         if binary is None:
             data = load_json(io.BytesIO(text), resolver=resolver)
         else:

@@ -43,7 +43,7 @@ class GltfMaterials:
             self._indices[number] = len(self.found)
             try:
                 self.found.append(Material(_DEFAULT) if number is None else self._material(number))
-            except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+            except (KeyError, IndexError, TypeError, ValueError, OverflowError, AttributeError) as error:
                 raise EtendueError(f"{self.path}: material {number} cannot be understood: {error}") from None
         return self._indices[number]
 

@@ -17,6 +17,9 @@ Kind = Literal["colour", "linear", "normal", "environment"]
 
 # Channels that differ by no more than what JPEG does to grey are equal: the image holds heights.
 _GREY = 8 / 255
+# A header may claim any size. Pixels that take more than this as floats must be borne out by the file's own size;
+# the best that PNG's and EXR's compression can do is a factor of 4128.
+_LARGE, _BEST_COMPRESSION = 1 << 28, 5000
 # Slope of a surface whose height rises from black to white over one texel.
 _HEIGHT = 4.0
 
@@ -57,11 +60,29 @@ def _open(file: Path) -> Any:
     source = oiio.ImageInput.open(str(file), wish)
     if source is None:
         raise EtendueError(f"{file}: not an image that can be read: {_first_line(oiio.geterror())}")
+    spec = source.spec()
+    needed = spec.width * spec.height * max(spec.depth, 1) * spec.nchannels * 4
+    if needed > max(_LARGE, _BEST_COMPRESSION * file.stat().st_size):
+        source.close()
+        size = f"{spec.width} x {spec.height} pixels of {spec.nchannels} channels"
+        raise EtendueError(
+            f"{file}: the image is damaged: its {file.stat().st_size} bytes cannot hold {size}"
+        )
     return source
 
 
 def _read(file: Path) -> tuple[NDArray[Any], str | None]:
     """Pixels (h, w, 1|3|4) as uint8, uint16 or float32, and the colour space where the file tells one."""
+    try:
+        return _decoded(file)
+    except UnicodeDecodeError:
+        # The library passes on names, and messages about them, whose bytes are no text.
+        raise EtendueError(
+            f"{file}: not an image that can be read: it holds text that is not UTF-8"
+        ) from None
+
+
+def _decoded(file: Path) -> tuple[NDArray[Any], str | None]:
     import OpenImageIO as oiio
 
     source = _open(file)

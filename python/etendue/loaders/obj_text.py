@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from .geometry import FARTHEST
 from .numbers import parse, words
 from .obj_faces import Corners, read_faces
 from .obj_lines import HASH, SPACE, TAB, Ints, Lines, blocks, decode, per_line
@@ -71,11 +72,11 @@ class _Reader:
         v = self._numbers(kinds["v"], 3, "a vertex needs 3 numbers")
         vt = self._numbers(kinds["vt"], 2, "a texture coordinate needs 2 numbers", least=1)
         vn = self._numbers(kinds["vn"], 3, "a normal needs 3 numbers")
-        bad = np.flatnonzero(
-            ~np.isfinite(v).all(1) | (np.abs(v).max(1, initial=0) > np.finfo(np.float32).max)
-        )
+        # Written so that NaN counts as wrong.
+        bad = np.flatnonzero(~(np.abs(v) <= FARTHEST).all(1))
         if len(bad):
-            self.lines.fail(kinds["v"][bad[0]], "a vertex that is not finite")
+            what = "too far away" if np.isfinite(v[bad[0]]).all() else "not finite"
+            self.lines.fail(kinds["v"][bad[0]], f"a vertex that is {what}")
         corners = read_faces(self.lines, kinds["f"], kinds)
         return ObjText(self.lines.path, v, vt, vn, corners, usemtl, mtllib, unknown)
 

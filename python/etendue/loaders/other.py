@@ -24,13 +24,24 @@ def load_plain(path: Path, warnings: list[str]) -> MeshFile:
     vertices, faces = data.get("vertices"), data.get("faces")
     if vertices is None or faces is None or not len(vertices) or not len(faces):
         raise EtendueError(f"{path}: no faces; a mesh needs vertices and faces")
-    faces = np.asarray(faces, np.int64)
-    if faces.shape[1] != 3:
-        faces = _triangles(np.asarray(vertices), faces)
-    visual = data.get("visual")
-    uvs = getattr(visual, "uv", None)
-    mesh = indexed_mesh(path, path.stem, np.asarray(vertices), faces, data.get("vertex_normals"), uvs)
+    points, corners = _table(vertices, np.float64), _table(faces, np.int64)
+    if points is None or corners is None or points.shape[1] != 3 or corners.shape[1] < 3:
+        raise EtendueError(f"{path}: not a {kind} file that can be read: its vertices or faces are no table")
+    if corners.shape[1] != 3:
+        corners = _triangles(points, corners)
+    normals = _table(data.get("vertex_normals"), np.float64)
+    uvs = _table(getattr(data.get("visual"), "uv", None), np.float64)
+    mesh = indexed_mesh(path, path.stem, points, corners, normals, uvs)
     return MeshFile(path, drop_degenerate(path, [mesh], warnings), [Material(path.stem)])
+
+
+def _table(values: Any, kind: type[Any]) -> NDArray[Any] | None:
+    """`values` as an array of rows; None where they are none, as the library gives from headers that lie."""
+    try:
+        table = np.asarray(values, kind)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return table if table.ndim == 2 else None
 
 
 def _triangles(vertices: NDArray[np.floating], faces: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -1,0 +1,12 @@
+"""The command `etendue`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def main(arguments: list[str] | None = None) -> Any:
+    """Run the command with `arguments` (those of the process by default) and exit with its code."""
+    from .app import app
+
+    return app(args=arguments, prog_name="etendue")

@@ -1,0 +1,120 @@
+"""What `etendue doctor` finds out: versions, processor, threads, and what is missing."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import sys
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+
+# Widest first; what Embree's kernels are compiled for.
+_INSTRUCTION_SETS = (
+    ("avx512f", "AVX-512"),
+    ("avx2", "AVX2"),
+    ("avx", "AVX"),
+    ("sse4_2", "SSE4.2"),
+    ("neon", "NEON"),
+)
+_REQUIREMENT = re.compile(r"\s*([A-Za-z0-9._-]+)\s*(?:\[[^\]]*\])?\s*\(?([^;)]*)\)?\s*(?:;(.*))?$")
+_EXTRA = re.compile(r"extra\s*==\s*[\"']([^\"']+)[\"']")
+
+
+def report() -> str:
+    """Everything, in lines for people."""
+    rows = [*_programs(), *_machine()]
+    required, extras = _requirements()
+    rows += [(name, installed(name) or "missing") for name in required]
+    width = max(len(name) for name, _ in rows)
+    lines = [f"{name:<{width}}  {value}" for name, value in rows]
+    return "\n".join([*lines, "", *_missing(required, extras)])
+
+
+def _programs() -> Iterator[tuple[str, str]]:
+    yield "etendue", installed("etendue") or "not installed as a package"
+    yield "python", f"{platform.python_version()} ({sys.executable})"
+    try:
+        from .. import _core
+    except ImportError as error:
+        yield "core", f"cannot be loaded: {error}"
+        return
+    yield "core", str(_core.__file__)
+    for name, version in _core.versions():
+        yield f"  {name}", version
+
+
+def _machine() -> Iterator[tuple[str, str]]:
+    yield "system", platform.platform()
+    name, flags = _processor()
+    yield "processor", name
+    best = next((label for flag, label in _INSTRUCTION_SETS if flag in flags), "unknown")
+    yield "  instruction set", best
+    yield "threads", str(_threads())
+
+
+def _processor() -> tuple[str, set[str]]:
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return platform.processor() or platform.machine(), set()
+    fields = dict(re.findall(r"^([^\t:]+?)\s*:\s*(.*)$", text, re.MULTILINE))
+    flags = set((fields.get("flags") or fields.get("Features") or "").split())
+    if platform.machine() in ("aarch64", "arm64"):
+        flags.add("neon")
+    return fields.get("model name", platform.machine()), flags
+
+
+def _threads() -> str:
+    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cores = os.cpu_count() or available
+    text = str(available) if available == cores else f"{available} of {cores}"
+    quota = _quota()
+    return text if quota is None else f"{text}, limited to {quota:g} by the container"
+
+
+def _quota() -> float | None:
+    try:
+        limit, period = Path("/sys/fs/cgroup/cpu.max").read_text(encoding="ascii").split()
+        return None if limit == "max" else int(limit) / int(period)
+    except (OSError, ValueError):
+        return None
+
+
+def _requirements() -> tuple[list[str], dict[str, list[str]]]:
+    """The packages that Étendue needs, and those of each of its extras, as its own metadata says."""
+    required: list[str] = []
+    extras: dict[str, list[str]] = {}
+    try:
+        declared = metadata.requires("etendue") or []
+    except metadata.PackageNotFoundError:
+        declared = []
+    for text in declared:
+        match = _REQUIREMENT.match(text)
+        if match is None:
+            continue
+        extra = _EXTRA.search(match.group(3) or "")
+        target = required if extra is None else extras.setdefault(extra.group(1), [])
+        target.append(match.group(1))
+    return required, extras
+
+
+def installed(name: str) -> str | None:
+    """The version of a package; None where it is not installed."""
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def _missing(required: list[str], extras: dict[str, list[str]]) -> Iterator[str]:
+    python = sys.executable or "python3"
+    for extra, names in (("", required), *extras.items()):
+        absent = [name for name in names if installed(name) is None]
+        label = f"{extra} (optional)" if extra else "required packages"
+        if not absent:
+            yield f"{label}: complete"
+        else:
+            wanted = f'"etendue[{extra}]"' if extra else " ".join(absent)
+            yield f"{label}: without {', '.join(absent)}; install with: {python} -m pip install {wanted}"

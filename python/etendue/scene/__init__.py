@@ -1,0 +1,245 @@
+"""A scene ready to be rendered: the scene file and the files that it names, in the compiled core."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from ..config import Config, read_config
+from ..config.overrides import Override
+from ..config.sections import Vec3
+from ..errors import EtendueError, Problem, SceneError
+from ..film import Film, sample_ranges
+from ..film.origin import Origin
+from ..film.progressive import Progress, Steps, go_on
+from ..film.sample_ranges import Range
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..film.fingerprint import Contents
+
+_SECTIONS = ("framebuffer", "camera", "scene")
+
+
+@dataclass
+class Scene:
+    """A scene in memory; made by `load`.
+
+    config: the scene file. core: the compiled core's scene. focal_depth: the camera's, after auto focus.
+    warnings: what will not look as its author may expect. load_seconds: time that loading took.
+    contents: name and digest of what files brought in. data_dirs: folders in which they were looked for.
+    """
+
+    config: Config
+    core: _core.Scene
+    focal_depth: float
+    warnings: list[Problem] = field(default_factory=list)
+    load_seconds: float = 0.0
+    contents: Contents = field(default_factory=dict)
+    data_dirs: tuple[str | PathLike[str], ...] = ()
+
+    @property
+    def lights(self) -> list[_core.Light]:
+        """The lights, area lights in the order of their meshes."""
+        return self.core.lights
+
+    def camera(self, size: tuple[int, int] | None = None) -> _core.Camera:
+        """The camera for an image of `size`, (width, height), by default the scene file's."""
+        return _camera(self.config, self.focal_depth, size)
+
+    def render(
+        self,
+        spp: int | None = None,
+        size: tuple[int, int] | None = None,
+        algorithm: str | None = None,
+        threads: int = 0,
+        seed: int | None = None,
+        time_limit: float | None = None,
+        progress: Progress | None = None,
+        samples: Sequence[int] | None = None,
+        resume: Film | None = None,
+        checkpoint: Callable[[Film], object] | None = None,
+        checkpoint_seconds: float = 30.0,
+        **parameters: Any,
+    ) -> Film:
+        """Render the scene.
+
+        spp: samples per pixel. size: (width, height). algorithm: name of the estimator, and `parameters` what
+        it takes, such as mis="balance", rr_threshold=0.5 or sampler="independent". Whatever is not given is
+        as the scene file says. threads: 0 for all cores; the image does not depend on it. time_limit: seconds
+        after which the film is returned as far as it is (`film.complete` is false then).
+        progress(fraction, samples_per_pixel): called about 20 times a second; an exception from it ends the
+        render and is raised.
+
+        samples: instead of spp, the samples with the indices [first, end), or a range of step 1; films of
+        different ones can be merged. resume: a film of this scene and these settings to go on from, which
+        itself stays as it is; without spp, to where it was to go.
+        checkpoint(film): called every checkpoint_seconds with the film so far.
+
+        Ctrl-C returns the film with what is done and `film.interrupted` set, and raises KeyboardInterrupt
+        only where nothing is done yet. Raises SceneError for a value that is not allowed, EtendueError for
+        a film to resume that is of something else, with all that differs.
+        """
+        goal = self._goal(spp, samples, resume)
+        wanted = goal[1] - goal[0] if goal else None
+        if wanted is not None and resume is not None:
+            # A merged film may have more than a scene file can ask for.
+            wanted = min(wanted, sample_ranges.MOST)
+        config = self._changed(wanted, size, algorithm, seed, parameters)
+        if threads < 0:
+            raise EtendueError(f"threads: 0 or a number of threads is needed, not {threads}")
+        if not checkpoint_seconds > 0:
+            raise EtendueError(f"checkpoint_seconds: above 0 is needed, not {checkpoint_seconds}")
+        origin = Origin.of(config, self.contents, self.data_dirs)
+        framebuffer = config.framebuffer
+        if resume is None:
+            start = Film.empty(framebuffer.res_w, framebuffer.res_h)
+        elif resume.origin is None:
+            raise EtendueError("resume: a film that does not come from a render cannot be gone on from")
+        else:
+            refusal = "the film is of another scene or other settings"
+            origin.require_same(resume.origin, refusal, "here", "in the film")
+            start = resume
+        start = dataclasses.replace(
+            start, goal=goal or (0, framebuffer.sppx), origin=origin, exposure=framebuffer.exposure
+        )
+        steps = Steps(progress, checkpoint, checkpoint_seconds, time_limit)
+        film = go_on(start, lambda first: self._renderer(config, threads, first), steps)
+        if film.interrupted and film.samples == 0:
+            raise KeyboardInterrupt
+        return film
+
+    def _goal(self, spp: int | None, samples: Sequence[int] | None, resume: Film | None) -> Range | None:
+        """The range of samples to reach; None: what the scene file says."""
+        if samples is not None:
+            for other, name in ((spp, "spp"), (resume, "resume")):
+                if other is not None:
+                    raise EtendueError(f"render: samples and {name} exclude each other")
+            return sample_ranges.checked(samples, "samples")
+        if resume is None:
+            return None if spp is None else (0, int(spp))
+        first = resume.goal[0]
+        return resume.towards(resume.goal if spp is None else (first, first + int(spp)))
+
+    def _renderer(self, config: Config, threads: int, first_sample: int) -> _core.Renderer:
+        from .. import _core
+
+        try:
+            return _core.Renderer(
+                self.core,
+                _camera(config, self.focal_depth),
+                config.algorithm,
+                config.parameters(),
+                config.sampler,
+                config.filter,
+                config.seed,
+                threads,
+                first_sample,
+            )
+        except ValueError as error:
+            raise EtendueError(str(error)) from error
+
+    def _changed(
+        self,
+        spp: int | None,
+        size: tuple[int, int] | None,
+        algorithm: str | None,
+        seed: int | None,
+        parameters: dict[str, Any],
+    ) -> Config:
+        """The config with the arguments of `render` in it, checked like a scene file's values."""
+        width, height = size or (None, None)
+        changes = {
+            "algorithm": algorithm,
+            "framebuffer.sppx": spp,
+            "framebuffer.res_w": width,
+            "framebuffer.res_h": height,
+            "seed": seed,
+            **parameters,
+        }
+        wrong = [key for key in parameters if key in _SECTIONS]
+        if wrong:
+            raise EtendueError(
+                f"render: {wrong[0]} cannot be changed for one render; load a changed scene instead"
+            )
+        overrides = [
+            # Numbers of numpy are welcome, although a file cannot hold them.
+            Override(key, value.item() if hasattr(value, "item") else value, "render")
+            for key, value in changes.items()
+            if value is not None
+        ]
+        return self.config.with_overrides(overrides) if overrides else self.config
+
+
+def load(
+    source: str | PathLike[str] | Config | dict[str, Any],
+    data_dirs: Sequence[str | PathLike[str]] = (),
+    warnings: list[Problem] | None = None,
+) -> Scene:
+    """Load a scene file, a Config, or plain data in the form of a scene file.
+
+    data_dirs: folders in which meshes and images are looked for as well. Warnings are in `Scene.warnings`,
+    and are appended to `warnings` too. Raises SceneError with every problem found.
+    """
+    from .. import _core
+    from .parts import Parts
+
+    start = time.perf_counter()
+    if isinstance(source, Config):
+        config = source
+    elif isinstance(source, dict):
+        config = Config.from_data(source)
+    else:
+        config = read_config(source, data_dirs=data_dirs)
+    found = config.warnings()
+    parts = Parts(config, data_dirs)
+    found += parts.warnings
+    try:
+        core = _core.Scene(parts.meshes, parts.materials, parts.textures, parts.sky)
+    except (ValueError, MemoryError) as error:
+        raise SceneError([Problem(str(error) or "not enough memory", config.path)]) from error
+    if not any(light.power > 0 for light in core.lights):
+        message = (
+            "no light: the image will be black; a material with emissive_strength above 0, or whose name or "
+            'type contains "light", shines, and so does a sky'
+        )
+        found.append(config.problem(("scene",), message))
+    focal_depth = config.camera.focal_depth
+    if config.auto_focus and config.camera.perspective:
+        focal_depth = _core.auto_focus(core, _camera(config, focal_depth))
+    if warnings is not None:
+        warnings += found
+    seconds = time.perf_counter() - start
+    return Scene(config, core, focal_depth, found, seconds, parts.contents, tuple(data_dirs))
+
+
+def _unit(direction: Vec3) -> Vec3:
+    """In double precision, as the file may give any length that single precision could not square."""
+    length = math.hypot(*direction)
+    return direction[0] / length, direction[1] / length, direction[2] / length
+
+
+def _camera(config: Config, focal_depth: float, size: tuple[int, int] | None = None) -> _core.Camera:
+    from .. import _core
+
+    camera, framebuffer = config.camera, config.framebuffer
+    width, height = size or (framebuffer.res_w, framebuffer.res_h)
+    try:
+        return _core.Camera(
+            camera.pos,
+            _unit(camera.dir),
+            _unit(camera.up),
+            camera.fov,
+            camera.lens_radius,
+            focal_depth,
+            camera.perspective,
+            width,
+            height,
+        )
+    except ValueError as error:
+        raise SceneError([config.problem(("camera",), str(error))]) from error
