@@ -65,8 +65,10 @@ Mesh make_mesh(const Vectors3& vertices, const In<uint32_t, nb::shape<-1, 3>>& t
     mesh.triangles.resize(m);
     for (size_t i = 0; i < n; ++i) mesh.vertices[i] = vec3_at(vertices, i);
     for (size_t i = 0; i < n; ++i) {
-        if (!(length2(mesh.vertices[i]) < INFINITE)) {
-            throw std::invalid_argument("vertex " + std::to_string(i) + " is not a finite point");
+        const vec3 reach = glm::abs(mesh.vertices[i]);
+        // Written so that NaN counts as too far.
+        if (!(reach.x <= Mesh::FARTHEST && reach.y <= Mesh::FARTHEST && reach.z <= Mesh::FARTHEST)) {
+            throw std::invalid_argument("vertex " + std::to_string(i) + " is not finite, or too far away");
         }
     }
     for (size_t i = 0; i < m; ++i) {

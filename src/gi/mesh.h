@@ -16,6 +16,9 @@ struct Mesh {
     std::vector<std::array<uint32_t, 3>> triangles;
     uint32_t material = 0;
 
+    /// Coordinates beyond this are refused: the square of a triangle's area must fit single precision.
+    static constexpr float FARTHEST = 1e9f;
+
     size_t vertex_count() const { return vertices.size() - 1; }
 
     std::array<vec3, 3> corners(uint32_t triangle) const {
@@ -46,7 +49,8 @@ struct Mesh {
         const float size = std::max(max_component(glm::abs(edge1)), max_component(glm::abs(edge2)));
         return {p0 + p1 + p2,
                 error_bound(7) * (glm::abs(p0) + glm::abs(p1) + glm::abs(p2)) + error_bound(4) * size,
-                glm::normalize(glm::cross(edge1, edge2))};
+                // Scaled first: the square of a small triangle's area would underflow to a normal of NaN.
+                glm::normalize(glm::cross(edge1 / size, edge2 / size))};
     }
 };
 
