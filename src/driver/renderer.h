@@ -44,8 +44,8 @@ class Renderer {
     uint64_t samples_done() const { return samples_done_; }
 
     const Film& film() const { return film_; }
-    /// Goes on from another film of the same size, scene, settings and first sample. Throws std::invalid_argument
-    /// for another size.
+    /// Goes on from another film of the same size, scene, settings and first sample. Throws
+    /// std::invalid_argument for another size.
     void resume(Film film);
     uint64_t rays() const { return rays_; }
     uint64_t invalid_count() const { return invalid_count_; }

@@ -17,19 +17,15 @@ double blackman_harris_cdf(double x) {
 
 }  // namespace
 
-Filter::Filter(Kind kind) {
+Filter::Filter(Kind kind) : kind_(kind) {
     for (int i = 0; i <= CELLS; ++i) {
-        const double q = double(i) / CELLS;
-        if (kind == Kind::box) {
-            quantiles_[i] = static_cast<float>(q - 0.5);
-            continue;
-        }
-        double low = -RADIUS, high = RADIUS;
+        const double root = double(i) / CELLS, left = root * root * root * root / 2;
+        double low = 0, high = RADIUS;
         for (int step = 0; step < 60; ++step) {
             const double middle = (low + high) / 2;
-            (blackman_harris_cdf(middle) < q ? low : high) = middle;
+            (blackman_harris_cdf(-middle) > left ? low : high) = middle;
         }
-        quantiles_[i] = static_cast<float>((low + high) / 2);
+        distances_[i] = static_cast<float>((low + high) / 2);
     }
 }
 

@@ -24,12 +24,19 @@ class Filter {
     static constexpr int CELLS = 256;
 
     float sample_1d(float u) const {
-        const float cell = u * CELLS;
-        const int i = static_cast<int>(cell);
-        return quantiles_[i] + (cell - static_cast<float>(i)) * (quantiles_[i + 1] - quantiles_[i]);
+        if (kind_ == Kind::box) return u - 0.5f;
+        // The filter is even, and its tail beyond a distance is tabulated over its fourth root: in equal
+        // shares of the whole the last cell would spread over a third of the radius.
+        const float cell = std::sqrt(std::sqrt(2 * std::min(u, 1 - u))) * CELLS;
+        const int i = std::min(static_cast<int>(cell), CELLS - 1);
+        const float distance =
+            distances_[i] + (cell - static_cast<float>(i)) * (distances_[i + 1] - distances_[i]);
+        return u < 0.5f ? -distance : distance;
     }
 
-    std::array<float, CELLS + 1> quantiles_;  // of the filter along one axis
+    Kind kind_;
+    // From the centre along one axis, to where the share (i / CELLS)^4 of a half is left beyond.
+    std::array<float, CELLS + 1> distances_{};
 };
 
 }  // namespace etendue

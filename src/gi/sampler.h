@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <string_view>
 
 #include "gi/math.h"
@@ -70,8 +71,9 @@ class Sampler {
 
     static uint32_t low(uint64_t h) { return static_cast<uint32_t>(h); }
     static uint32_t high(uint64_t h) { return static_cast<uint32_t>(h >> 32); }
+    /// Cut to the 24 digits of a float, not rounded: a point stays in its stratum, and below one.
     static float to_float(uint32_t x) {
-        return std::min(static_cast<float>(x) * 0x1p-32f, ONE_MINUS_EPSILON);
+        return static_cast<float>(x & ~(0xffu >> std::countl_zero(x | 1))) * 0x1p-32f;
     }
 
     static uint32_t reverse_bits(uint32_t x) {

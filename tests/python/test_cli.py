@@ -259,7 +259,7 @@ def test_an_image_larger_than_the_memory(etendue: Command, monkeypatch: pytest.M
     monkeypatch.setattr(memory, "of_machine", lambda: 16_000_000_000)
     run = etendue("render", "lit.json", "--size", "65536x65536")
     assert (run.code, run.out) == (2, "")
-    assert run.err == "an image of 65536 x 65536 pixels needs 704 GB of memory; this machine has 16 GB\n"
+    assert run.err == "an image of 65536 x 65536 pixels needs 979 GB of memory; this machine has 16 GB\n"
 
 
 def test_outputs_are_tried_before_anything_else(etendue: Command) -> None:

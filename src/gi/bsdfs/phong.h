@@ -45,7 +45,8 @@ struct Phong : Bsdf {
     static float exponent(const Surface& surface) {
         return std::max(2 / sqr(std::max(surface.roughness, Ggx::MIN_ALPHA)) - 2, 0.f);
     }
-    /// cos^n of the angle of h, from its sine: near the normal the cosine has too few digits left for a large power.
+    /// cos^n of the angle of h, from its sine: near the normal the cosine has too few digits left for a large
+    /// power.
     static float cos_power(const vec3& h, float n) {
         const float sin2 = h.x * h.x + h.y * h.y;
         return sin2 < 1 ? std::exp(n / 2 * std::log1p(-sin2)) : n == 0 ? 1.f : 0.f;
