@@ -138,16 +138,21 @@ def _placed(
     path: Path, name: str, kwargs: dict[str, Any], transform: NDArray[np.float64], material: int
 ) -> Mesh:
     linear = transform[:3, :3]
-    points = np.asarray(kwargs["vertices"], np.float64) @ linear.T + transform[:3, 3]
-    faces = np.asarray(kwargs["faces"])
+    points, faces = np.asarray(kwargs["vertices"], np.float64), np.asarray(kwargs["faces"])
+    if points.ndim != 2 or points.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
+        raise EtendueError(f"{path}: mesh {name}: its positions are no points, or its faces no triangles")
+    local = points.shape
+    points = points @ linear.T + transform[:3, 3]
     mirrored = np.linalg.det(linear) < 0
     normals = kwargs.get("vertex_normals")
-    if normals is not None:
+    if normals is not None and np.shape(normals) == local:
         # The cofactor matrix is the inverse transpose but for its scale, and exists for flat objects too.
         cofactor = np.stack(
             [np.cross(linear[1], linear[2]), np.cross(linear[2], linear[0]), np.cross(*linear[:2])]
         )
         normals = np.asarray(normals, np.float64) @ cofactor.T * (-1 if mirrored else 1)
+    else:
+        normals = None
     uvs = getattr(kwargs.get("visual"), "uv", None)
     return indexed_mesh(path, name, points, faces[:, ::-1] if mirrored else faces, normals, uvs, material)
 
