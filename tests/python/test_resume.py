@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -296,7 +296,15 @@ def strike(number: int) -> None:
     time.sleep(0.05)
 
 
-def test_the_first_signal_waits_for_the_file_the_second_does_not() -> None:
+@pytest.fixture
+def default_ctrl_c() -> Iterator[None]:
+    """Python's own handler, which a shell that runs the tests in the background has switched off."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_the_first_signal_waits_for_the_file_the_second_does_not(default_ctrl_c: None) -> None:
     with Interrupts() as interrupts:
         with interrupts.shielded():
             strike(signal.SIGTERM)

@@ -15,10 +15,10 @@ import pytest
 import etendue
 from etendue import EtendueError, Film, Scene, SceneError, _core
 from etendue.config import Config
+from etendue.config.patches import merged
 from etendue.config.sections import MaterialPatch
 from etendue.display import srgb_to_linear
 from etendue.loaders.types import Material
-from etendue.config.patches import merged
 from etendue.scene.materials import resolve
 
 # A square of side 2 around the origin in the plane z = 0, facing +z, uv (0, 0) at its lower left.
