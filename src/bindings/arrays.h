@@ -7,8 +7,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <string_view>
 
 #include "gi/math.h"
 
@@ -50,6 +52,15 @@ void set_vec3(Array& a, size_t i, const vec3& v) {
 
 inline void require_same_length(size_t a, size_t b, const char* what) {
     if (a != b) throw std::invalid_argument(std::string(what) + " must have one row each");
+}
+
+/// The place of a name in a list of them. Throws std::invalid_argument where it is not there.
+template <size_t N>
+size_t index_of(const std::array<std::string_view, N>& names, const std::string& name, const char* what) {
+    const auto it = std::ranges::find(names, name);
+    if (it == names.end())
+        throw std::invalid_argument(std::string("there is no ") + what + " \"" + name + "\"");
+    return it - names.begin();
 }
 
 inline vec3 to_vec3(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }

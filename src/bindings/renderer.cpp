@@ -17,14 +17,6 @@ namespace etendue {
 
 namespace {
 
-template <size_t N>
-size_t index_of(const std::array<std::string_view, N>& names, const std::string& name, const char* what) {
-    const auto it = std::ranges::find(names, name);
-    if (it == names.end())
-        throw std::invalid_argument(std::string("there is no ") + what + " \"" + name + "\"");
-    return it - names.begin();
-}
-
 std::unique_ptr<Renderer> make_renderer(const Scene& scene, const Camera& camera,
                                         const std::string& algorithm,
                                         const std::map<std::string, ParameterValue>& parameters,

@@ -292,9 +292,7 @@ struct PythonSampler {
 };
 
 Sampler::Kind sampler_kind(const std::string& name) {
-    const auto it = std::ranges::find(Sampler::names, name);
-    if (it == Sampler::names.end()) throw std::invalid_argument("there is no sampler \"" + name + "\"");
-    return static_cast<Sampler::Kind>(it - Sampler::names.begin());
+    return static_cast<Sampler::Kind>(index_of(Sampler::names, name, "sampler"));
 }
 
 void bind_sampler(nb::module_& m) {
@@ -392,9 +390,7 @@ void bind_camera(nb::module_& m) {
     m.def(
         "filter_offsets",
         [](const std::string& name, const Vectors2& u) {
-            const auto it = std::ranges::find(Filter::names, name);
-            if (it == Filter::names.end()) throw std::invalid_argument("there is no filter \"" + name + "\"");
-            const Filter filter(static_cast<Filter::Kind>(it - Filter::names.begin()));
+            const Filter filter(static_cast<Filter::Kind>(index_of(Filter::names, name, "filter")));
             auto out = new_array<Out<float, nb::shape<-1, 2>>>({u.shape(0), 2});
             for (size_t i = 0; i < u.shape(0); ++i) {
                 const vec2 offset = filter.sample(vec2_at(u, i));
