@@ -536,6 +536,6 @@ def test_help_says_everything_in_words(etendue: Command) -> None:
 
 def test_help_is_quick() -> None:
     heavy = ("numpy", "pydantic", "OpenImageIO", "rich")
-    code = f"import sys, etendue.cli.app; print([name for name in {heavy} if name in sys.modules])"
+    code = f"import sys, etendue.cli.commands; print([name for name in {heavy} if name in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "[]\n"
