@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "algorithms/observer.h"
 #include "gi/sampler.h"
 #include "gi/scene.h"
 
@@ -44,20 +45,48 @@ class Parameters {
 /// What an estimator works with: the scene, the sample's random numbers, and counters. One a thread.
 class Context {
   public:
-    Context(const Scene& scene, Sampler sampler) : scene(scene), sampler(sampler) {}
+    Context(const Scene& scene, Sampler sampler, Observer* observer = nullptr)
+        : scene(scene), sampler(sampler), observer_(observer) {}
 
+    /// What the path's next edge ends at.
     SurfaceHit intersect(const Ray& ray) {
         ++rays;
-        return scene.intersect(ray);
+        const SurfaceHit hit = scene.intersect(ray);
+        if (observer_) observer_->edge(ray, hit);
+        return hit;
     }
     bool visible(const SurfaceHit& hit, const LightSample& sample) {
         ++rays;
-        return !scene.occluded(shadow_ray(hit, sample));
+        const Ray ray = shadow_ray(hit, sample);
+        const bool visible = !scene.occluded(ray);
+        if (observer_) observer_->shadow_ray(ray, visible);
+        return visible;
+    }
+    /// A direction to go on in, by the BSDF; empty where nothing goes on, as on a lamp, which absorbs.
+    std::optional<BsdfSample> bounce(const SurfaceHit& hit) {
+        const float lobe = sampler.next_1d();
+        const auto sample = hit.sample(lobe, sampler.next_2d());
+        if (observer_) observer_->bounce(sample ? &*sample : nullptr);
+        return sample;
+    }
+    /// Ends the path with probability q; the caller divides the throughput of survivors by 1 - q.
+    bool roulette(float q) {
+        const bool survives = sampler.next_1d() >= q;
+        if (observer_) observer_->roulette(q, survives);
+        return survives;
+    }
+    /// The radiance that light which was found adds to the estimate.
+    vec3 light(const Contribution& found) {
+        if (observer_) observer_->contribution(found);
+        return found.unweighted * found.weight;
     }
 
     const Scene& scene;
     Sampler sampler;
     uint64_t rays = 0;
+
+  private:
+    Observer* observer_;
 };
 
 class Algorithm {

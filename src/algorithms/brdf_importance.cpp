@@ -15,25 +15,30 @@ class BRDFImportance : public Algorithm {
 
     vec3 radiance(Context& context, Ray ray) const override {
         const SurfaceHit hit = context.intersect(ray);
-        const vec3 emitted = hit.Le();
+        const vec3 emitted = context.light({Technique::bsdf_sampling, 1, hit.Le()});
         if (!hit.valid || MAX_CAM_PATH_LENGTH < 2) return emitted;
 
         context.sampler.start_vertex(1);
-        const float lobe = context.sampler.next_1d();
-        const vec2 u = context.sampler.next_2d();
-        // A delta lobe has no other directions than its own.
-        if (uniform_ && !hit.is_type(BRDF_SPECULAR)) {
-            const vec3 wi = uniform_sphere(u);
-            const vec3 weight = hit.f(wi) * (std::abs(glm::dot(wi, hit.frame.n)) / UNIFORM_SPHERE_PDF);
-            if (is_black(weight)) return emitted;
-            return emitted + weight * context.intersect(hit.ray_towards(wi)).Le();
-        }
-        const auto bounce = hit.sample(lobe, u);
-        if (!bounce) return emitted;
-        return emitted + bounce->weight * context.intersect(hit.ray_towards(bounce->wi)).Le();
+        const auto [wi, weight] = direction(context, hit);
+        if (is_black(weight)) return emitted;
+        const vec3 reflected = weight * context.intersect(hit.ray_towards(wi)).Le();
+        return emitted + context.light({Technique::bsdf_sampling, 2, reflected});
     }
 
   private:
+    struct Direction {
+        vec3 wi, weight;  // f |cos| / pdf
+    };
+    Direction direction(Context& context, const SurfaceHit& hit) const {
+        // A delta lobe has no other directions than its own.
+        if (uniform_ && !hit.is_type(BRDF_SPECULAR)) {
+            const vec3 wi = uniform_sphere(context.sampler.next_2d());
+            return {wi, hit.f(wi) * (std::abs(glm::dot(wi, hit.frame.n)) / UNIFORM_SPHERE_PDF)};
+        }
+        const auto bounce = context.bounce(hit);
+        return bounce ? Direction{bounce->wi, bounce->weight} : Direction{};
+    }
+
     const int MAX_CAM_PATH_LENGTH;
     const bool uniform_;
 };

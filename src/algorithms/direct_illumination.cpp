@@ -16,16 +16,17 @@ class DirectIllumination : public Algorithm {
 
     vec3 radiance(Context& context, Ray ray) const override {
         const SurfaceHit hit = context.intersect(ray);
-        const vec3 emitted = hit.Le();
+        const vec3 emitted = context.light({Technique::bsdf_sampling, 1, hit.Le()});
         if (!hit.valid || MAX_CAM_PATH_LENGTH < 2) return emitted;
 
         context.sampler.start_vertex(1);
-        if (!hit.is_type(BRDF_SPECULAR)) return emitted + sample_direct_light(context, hit, Mis::none);
-
-        const float lobe = context.sampler.next_1d();
-        const auto bounce = hit.sample(lobe, context.sampler.next_2d());
+        if (!hit.is_type(BRDF_SPECULAR)) {
+            return emitted + sample_direct_light(context, hit, vec3(1), 2, Mis::none);
+        }
+        const auto bounce = context.bounce(hit);
         if (!bounce) return emitted;
-        return emitted + bounce->weight * context.intersect(hit.ray_towards(bounce->wi)).Le();
+        const vec3 reflected = bounce->weight * context.intersect(hit.ray_towards(bounce->wi)).Le();
+        return emitted + context.light({Technique::bsdf_sampling, 2, reflected});
     }
 
   private:

@@ -50,9 +50,10 @@ inline float bsdf_sampling_weight(Mis mis, float bsdf_pdf, float light_pdf) {
     return 1;
 }
 
-/// The light of one sampled light over one shadow ray, weighted; 0 at delta surfaces, where it could never be
-/// seen.
-inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, Mis mis) {
+/// The light of one sampled light over one shadow ray, weighted, at the end of a path of `edges` rays with the
+/// throughput of its vertex; 0 at delta surfaces, where it could never be seen.
+inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, const vec3& throughput, int edges,
+                                Mis mis) {
     if (hit.is_type(BRDF_SPECULAR)) return vec3(0);
     const float u_light = context.sampler.next_1d();
     const vec2 u_point = context.sampler.next_2d();
@@ -62,8 +63,12 @@ inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, Mis mis
     if (!sample) return vec3(0);
     const vec3 reflected = hit.f(sample->wi) * std::abs(glm::dot(sample->wi, hit.frame.n)) * sample->radiance;
     if (is_black(reflected) || !context.visible(hit, *sample)) return vec3(0);
-    const float light_pdf = choice->pmf * sample->pdf;
-    return reflected * (light_sampling_weight(mis, light_pdf, hit.pdf(sample->wi)) / light_pdf);
+    Contribution found{Technique::light_sampling, edges};
+    found.pdf = choice->pmf * sample->pdf;
+    found.other_pdf = hit.pdf(sample->wi);
+    found.weight = light_sampling_weight(mis, found.pdf, found.other_pdf);
+    found.unweighted = throughput * reflected / found.pdf;
+    return context.light(found);
 }
 
 }  // namespace etendue

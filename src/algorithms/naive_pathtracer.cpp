@@ -20,13 +20,14 @@ class NaivePathtracer : public Algorithm {
         float eta_scale = 1;
         for (int depth = 1;; ++depth) {
             const SurfaceHit hit = context.intersect(ray);
-            if (hit.is_light()) radiance += throughput * hit.Le();
+            if (hit.is_light()) {
+                radiance += context.light({Technique::bsdf_sampling, depth, throughput * hit.Le()});
+            }
             if (!hit.valid || depth == MAX_CAM_PATH_LENGTH) break;
 
             // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
             context.sampler.start_vertex(depth);
-            const float lobe = context.sampler.next_1d();
-            const auto bounce = hit.sample(lobe, context.sampler.next_2d());
+            const auto bounce = context.bounce(hit);
             if (!bounce) break;
             throughput *= bounce->weight;
             eta_scale *= bounce->eta2;

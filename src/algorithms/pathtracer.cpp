@@ -28,19 +28,22 @@ class Pathtracer : public Algorithm {
             const SurfaceHit hit = context.intersect(ray);
             // Light found by chance, against the pdf of having sampled it on purpose from the vertex before.
             if (hit.is_light()) {
-                const float weight =
-                    prev_delta ? 1 : bsdf_sampling_weight(mis_, prev_pdf, light_pdf(context, hit));
-                radiance += throughput * weight * hit.Le();
+                Contribution found{Technique::bsdf_sampling, depth, throughput * hit.Le()};
+                if (!prev_delta) {
+                    found.pdf = prev_pdf;
+                    found.other_pdf = light_pdf(context, hit);
+                    found.weight = bsdf_sampling_weight(mis_, found.pdf, found.other_pdf);
+                }
+                radiance += context.light(found);
             }
             if (!hit.valid || depth == MAX_CAM_PATH_LENGTH) break;
 
             // Light sampled on purpose, one edge further.
             context.sampler.start_vertex(depth);
-            radiance += throughput * sample_direct_light(context, hit, mis_);
+            radiance += sample_direct_light(context, hit, throughput, depth + 1, mis_);
 
             // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
-            const float lobe = context.sampler.next_1d();
-            const auto bounce = hit.sample(lobe, context.sampler.next_2d());
+            const auto bounce = context.bounce(hit);
             if (!bounce) break;
             throughput *= bounce->weight;
             eta_scale *= bounce->eta2;

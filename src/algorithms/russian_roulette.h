@@ -24,7 +24,7 @@ class RussianRoulette {
         const float carried = max_component(throughput) * eta_scale;
         if (bounces <= RR_MIN_PATH_LENGTH || carried >= RR_THRESHOLD) return true;
         const float q = 1 - carried / RR_THRESHOLD;
-        if (context.sampler.next_1d() < q) return false;
+        if (!context.roulette(q)) return false;
         throughput /= 1 - q;
         return true;
     }

@@ -1,11 +1,5 @@
 #include "driver/renderer.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-#include <xmmintrin.h>
-
 #include <chrono>
 #include <stdexcept>
 
@@ -13,7 +7,6 @@ namespace etendue {
 
 namespace {
 
-constexpr uint32_t TILE = 16;
 // A pass is short enough for a picture and a clock reading to be had often, and long enough to keep threads
 // busy.
 constexpr double PASS_SECONDS = 0.25;
@@ -23,33 +16,16 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Denormals as zero while in scope: Embree asks for it, and a dim path would otherwise cost a hundred bright
-/// ones.
-class FlushDenormals {
-  public:
-    FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | FLUSH_TO_ZERO | DENORMALS_ARE_ZERO); }
-    ~FlushDenormals() { _mm_setcsr(saved_); }
-    FlushDenormals(const FlushDenormals&) = delete;
-    FlushDenormals& operator=(const FlushDenormals&) = delete;
-
-  private:
-    static constexpr unsigned FLUSH_TO_ZERO = 0x8000, DENORMALS_ARE_ZERO = 0x0040;
-    unsigned saved_;
-};
-
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Algorithm> algorithm,
                    const Settings& settings)
     : scene_(scene),
-      camera_(camera),
+      sensor_{camera, Filter(settings.filter), settings.sampler, settings.seed},
       algorithm_(std::move(algorithm)),
-      filter_(settings.filter),
-      settings_(settings),
-      threads_(settings.threads > 0 ? settings.threads : oneapi::tbb::info::default_concurrency()),
-      film_(camera.width(), camera.height()),
-      tiles_x_((camera.width() + TILE - 1) / TILE),
-      tiles_y_((camera.height() + TILE - 1) / TILE) {}
+      first_sample_(settings.first_sample),
+      threads_(thread_count(settings.threads)),
+      film_(camera.width(), camera.height()) {}
 
 void Renderer::resume(Film film) {
     if (film.width() != film_.width() || film.height() != film_.height()) {
@@ -61,12 +37,8 @@ void Renderer::resume(Film film) {
 bool Renderer::render(uint64_t samples, double time_limit) {
     const Clock::time_point start = Clock::now();
     const double seconds_before = seconds_;
-    // oneTBB itself would start no more threads than there are cores.
-    using oneapi::tbb::global_control;
-    const global_control allow(
-        global_control::max_allowed_parallelism,
-        std::max<size_t>(threads_, global_control::active_value(global_control::max_allowed_parallelism)));
-    oneapi::tbb::task_arena arena(threads_);
+    TileWorkers workers(threads_);
+    const Tiles tiles(film_.width(), film_.height());
     uint64_t done = samples, taken = 0;
     for (const Pixel& pixel : film_.pixels()) {
         done = std::min(done, pixel.count);
@@ -78,11 +50,9 @@ bool Renderer::render(uint64_t samples, double time_limit) {
         const Clock::time_point pass_start = Clock::now();
         const bool may_stop = done > 0;
         done += std::min(pass, samples - done);
-        arena.execute([&] {
-            oneapi::tbb::parallel_for(0u, tiles_x_ * tiles_y_, [&](uint32_t tile) {
-                render_tile(tile, done);
-                if (may_stop && seconds_since(start) > time_limit) stop_ = true;
-            });
+        workers.for_each(tiles, [&](uint32_t, const Tile& tile) {
+            render_tile(tile, done);
+            if (may_stop && seconds_since(start) > time_limit) stop_ = true;
         });
         if (seconds_since(start) > time_limit) stop_ = true;
         seconds_ = seconds_before + seconds_since(start);
@@ -94,14 +64,11 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     return std::ranges::all_of(film_.pixels(), [&](const Pixel& pixel) { return pixel.count >= samples; });
 }
 
-void Renderer::render_tile(uint32_t tile, uint64_t samples) {
-    const FlushDenormals flush;
-    Context context(scene_, Sampler(settings_.sampler, settings_.seed));
-    const uint32_t x0 = tile % tiles_x_ * TILE, x1 = std::min(x0 + TILE, film_.width());
-    const uint32_t y0 = tile / tiles_x_ * TILE, y1 = std::min(y0 + TILE, film_.height());
+void Renderer::render_tile(const Tile& tile, uint64_t samples) {
+    Context context(scene_, sensor_.make_sampler());
     uint64_t taken = 0;
-    for (uint32_t y = y0; y < y1; ++y) {
-        for (uint32_t x = x0; x < x1; ++x) taken += render_pixel(context, x, y, samples);
+    for (uint32_t y = tile.y0; y < tile.y1; ++y) {
+        for (uint32_t x = tile.x0; x < tile.x1; ++x) taken += render_pixel(context, x, y, samples);
     }
     rays_ += context.rays;
     samples_done_ += taken;
@@ -109,14 +76,10 @@ void Renderer::render_tile(uint32_t tile, uint64_t samples) {
 
 uint64_t Renderer::render_pixel(Context& context, uint32_t x, uint32_t y, uint64_t samples) {
     Pixel& pixel = film_.at(x, y);
-    // By place on the film, so that a pixel's samples do not depend on the size of the image.
-    const uint32_t id = y << 16 | x;
     const uint64_t before = pixel.count;
     while (pixel.count < samples && !stop_) {
-        const uint64_t sample = settings_.first_sample + pixel.count;
-        context.sampler.start(id, sample);
-        const vec2 film = vec2(x, y) + 0.5f + filter_.sample(context.sampler.next_2d());
-        const Ray ray = camera_.ray(film, context.sampler.next_2d());
+        const uint64_t sample = first_sample_ + pixel.count;
+        const Ray ray = sensor_.start(context.sampler, x, y, sample);
         if (!pixel.add(algorithm_->radiance(context, ray), sample)) report_invalid({x, y, sample});
     }
     return pixel.count - before;

@@ -7,9 +7,9 @@
 #include <mutex>
 
 #include "algorithms/algorithm.h"
-#include "gi/camera.h"
+#include "driver/sensor.h"
+#include "driver/tiles.h"
 #include "gi/film.h"
-#include "gi/filter.h"
 
 namespace etendue {
 
@@ -43,6 +43,9 @@ class Renderer {
     /// Of the running or last `render`: pixels x samples that it was asked for and has.
     uint64_t samples_done() const { return samples_done_; }
 
+    const Scene& scene() const { return scene_; }
+    const Sensor& sensor() const { return sensor_; }
+    const Algorithm& algorithm() const { return *algorithm_; }
     const Film& film() const { return film_; }
     /// Goes on from another film of the same size, scene, settings and first sample. Throws
     /// std::invalid_argument for another size.
@@ -57,19 +60,17 @@ class Renderer {
     static constexpr size_t MAX_INVALID_LISTED = 1000;
 
   private:
-    void render_tile(uint32_t tile, uint64_t samples);
+    void render_tile(const Tile& tile, uint64_t samples);
     /// Returns how many samples it took.
     uint64_t render_pixel(Context& context, uint32_t x, uint32_t y, uint64_t samples);
     void report_invalid(const InvalidSample& sample);
 
     const Scene& scene_;
-    Camera camera_;
+    Sensor sensor_;
     std::unique_ptr<Algorithm> algorithm_;
-    Filter filter_;
-    Settings settings_;
+    uint64_t first_sample_;
     int threads_;
     Film film_;
-    uint32_t tiles_x_, tiles_y_;
     std::atomic<bool> stop_ = false;
     std::atomic<uint64_t> rays_ = 0, samples_done_ = 0, invalid_count_ = 0;
     std::atomic<double> seconds_ = 0;

@@ -100,8 +100,8 @@ MUTANTS = (
     Mutant(
         "MIS weight of the wrong pair",
         "algorithms/pathtracer.cpp",
-        "bsdf_sampling_weight(mis_, prev_pdf, light_pdf(context, hit))",
-        "light_sampling_weight(mis_, prev_pdf, light_pdf(context, hit) / 2)",
+        "bsdf_sampling_weight(mis_, found.pdf, found.other_pdf)",
+        "light_sampling_weight(mis_, found.pdf, found.other_pdf / 2)",
         furnace(),
     ),
     Mutant(
