@@ -403,3 +403,165 @@ class Renderer:
     @property
     def invalid(self) -> list[tuple[int, int, int]]:
         """The first thousand of them: (x, y, sample)."""
+
+class Contribution:
+    """Light that a path brought to the camera."""
+
+    @property
+    def technique(self) -> str:
+        """bsdf_sampling or light_sampling."""
+
+    @property
+    def edges(self) -> int:
+        """Length of the path in rays."""
+
+    @property
+    def unweighted(self) -> list[float]:
+        """(3,): radiance, as the technique alone would have it."""
+
+    @property
+    def weight(self) -> float:
+        """Of the technique, by multiple importance sampling."""
+
+    @property
+    def pdf(self) -> float:
+        """
+        Of the last direction by this technique, in solid angle; 0 where it has no density.
+        """
+
+    @property
+    def other_pdf(self) -> float:
+        """Of the same direction by the other technique."""
+
+class ShadowRay:
+    """A look at a light."""
+
+    @property
+    def origin(self) -> list[float]: ...
+
+    @property
+    def direction(self) -> list[float]:
+        """(3,): to the light; not of unit length."""
+
+    @property
+    def visible(self) -> bool: ...
+
+class PathVertex:
+    """The end of a path's edge, and what the estimator did there."""
+
+    @property
+    def origin(self) -> list[float]: ...
+
+    @property
+    def direction(self) -> list[float]:
+        """(3,): unit, of the ray that led here."""
+
+    @property
+    def hit(self) -> bool:
+        """False: the ray left the scene."""
+
+    @property
+    def position(self) -> list[float]: ...
+
+    @property
+    def normal(self) -> list[float]:
+        """(3,): unit, for shading, on the side that the ray came from."""
+
+    @property
+    def front(self) -> bool: ...
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def material(self) -> str:
+        """Its name; empty where the ray left the scene."""
+
+    @property
+    def bsdf(self) -> str: ...
+
+    @property
+    def albedo(self) -> list[float]: ...
+
+    @property
+    def emitted(self) -> list[float]:
+        """(3,): radiance that shines from here along the ray."""
+
+    @property
+    def throughput(self) -> list[float]:
+        """(3,): of the path when it came here."""
+
+    @property
+    def bounce_lobe(self) -> str | None:
+        """Of the direction that the path went on in; None: it did not."""
+
+    @property
+    def bounce_pdf(self) -> float | None:
+        """In solid angle; of a specular lobe the probability of choosing it."""
+
+    @property
+    def bounce_weight(self) -> list[float] | None:
+        """(3,): f |cos| / pdf."""
+
+    @property
+    def roulette_q(self) -> float | None:
+        """
+        Probability with which Russian roulette ended the path here; None: it was not played.
+        """
+
+    @property
+    def roulette_survived(self) -> bool | None: ...
+
+    @property
+    def shadow_rays(self) -> list[ShadowRay]: ...
+
+    @property
+    def contributions(self) -> list[Contribution]: ...
+
+class PathRecord:
+    """A sample's path, vertex by vertex."""
+
+    @property
+    def vertices(self) -> list[PathVertex]: ...
+
+    @property
+    def radiance(self) -> list[float]:
+        """(3,): the estimate."""
+
+def replay(renderer: Renderer, x: int, y: int, sample: int) -> PathRecord:
+    """
+    The path of one sample of a pixel, as `renderer` takes it. Raises ValueError where there is no such pixel.
+    """
+
+class TechniqueFilm:
+    """
+    The picture split by how its light was found: by technique and path length.
+    """
+
+    def __init__(self, renderer: Renderer, max_edges: int = 10) -> None:
+        """
+        For the scene, camera, estimator and samples of `renderer`, from its seed and sample 0. Paths of more than
+        max_edges rays are counted there. Needs 192 bytes x max_edges a pixel.
+        """
+
+    def render(self, samples: int, progress: object | None = None) -> bool:
+        """
+        Takes so many samples more of every pixel. progress(fraction) is called about 20 times a second; an exception in it,
+        or from a signal, ends the render and is raised: the film is of no use then.
+        """
+
+    def mean(self) -> Annotated[NDArray[numpy.float32], dict(shape=(2, 2, None, None, None, 3))]:
+        """
+        float32 (2, 2, max_edges, height, width, 3): mean radiance, [0] with MIS weights, [1] without; [:, 0] found by
+        BSDF sampling, [:, 1] by light sampling; [:, :, n - 1] over paths of n rays. The sum over mean()[0] is the
+        picture.
+        """
+
+    def variance(self) -> Annotated[NDArray[numpy.float32], dict(shape=(2, 2, None, None, None, 3))]:
+        """
+        Of the same shape: variance of one sample, estimated without bias; 0 below two samples.
+        """
+
+    @property
+    def samples(self) -> int:
+        """Taken of every pixel."""

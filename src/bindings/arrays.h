@@ -71,5 +71,6 @@ void bind_registry(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_study(nb::module_& m);
 void bind_renderer(nb::module_& m);
+void bind_paths(nb::module_& m);
 
 }  // namespace etendue

@@ -11,4 +11,5 @@ NB_MODULE(_core, m) {
     etendue::bind_scene(m);
     etendue::bind_study(m);
     etendue::bind_renderer(m);
+    etendue::bind_paths(m);
 }

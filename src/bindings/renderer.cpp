@@ -6,11 +6,8 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/variant.h>
 
-#include <chrono>
-#include <condition_variable>
-#include <thread>
-
 #include "bindings/arrays.h"
+#include "bindings/watch.h"
 #include "driver/renderer.h"
 
 namespace etendue {
@@ -31,51 +28,16 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const Camera& camera
     return std::make_unique<Renderer>(scene, camera, make_algorithm(algorithm, parameters), settings);
 }
 
-/// Renders on another thread, while this one, which holds the interpreter, looks every so often for signals
-/// and calls `progress`. An exception from either cancels the render, and is raised once it has stopped.
 bool render(Renderer& renderer, uint64_t samples, const nb::object& progress,
             std::optional<double> time_limit) {
-    using namespace std::chrono_literals;
-    std::mutex mutex;
-    std::condition_variable finished;
-    bool is_finished = false, complete = false;
-    std::exception_ptr failure;
-    std::thread worker([&] {
-        try {
-            complete = renderer.render(samples, time_limit.value_or(INFINITE));
-        } catch (...) {
-            failure = std::current_exception();
-        }
-        const std::lock_guard lock(mutex);
-        is_finished = true;
-        finished.notify_one();
-    });
-    const auto join = [&] {
-        const nb::gil_scoped_release release;
-        worker.join();
-    };
     const double wanted = static_cast<double>(samples) * static_cast<double>(renderer.film().pixels().size());
-    try {
-        for (bool last = false; !last;) {
-            {
-                const nb::gil_scoped_release release;
-                std::unique_lock lock(mutex);
-                last = finished.wait_for(lock, 50ms, [&] { return is_finished; });
-            }
-            if (PyErr_CheckSignals() != 0) throw nb::python_error();
-            if (!progress.is_none()) {
-                const double done = static_cast<double>(renderer.samples_done()) / wanted;
-                progress(done, done * static_cast<double>(samples));
-            }
-        }
-    } catch (...) {
-        renderer.cancel();
-        join();
-        throw;
-    }
-    join();
-    if (failure) std::rethrow_exception(failure);
-    return complete;
+    return watched([&] { return renderer.render(samples, time_limit.value_or(INFINITE)); },
+                   [&] { renderer.cancel(); },
+                   [&] {
+                       if (progress.is_none()) return;
+                       const double done = static_cast<double>(renderer.samples_done()) / wanted;
+                       progress(done, done * static_cast<double>(samples));
+                   });
 }
 
 template <class Value>

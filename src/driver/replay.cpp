@@ -1,0 +1,48 @@
+#include "driver/replay.h"
+
+#include "driver/tiles.h"
+
+namespace etendue {
+
+namespace {
+
+class Recorder : public Observer {
+  public:
+    explicit Recorder(std::vector<PathVertex>& vertices) : vertices_(vertices) {}
+
+    void edge(const Ray& ray, const SurfaceHit& hit) override {
+        vertices_.push_back({ray, hit, throughput_, {}, {}, {}, {}});
+    }
+    void shadow_ray(const Ray& ray, bool visible) override { here().shadow_rays.push_back({ray, visible}); }
+    void bounce(const BsdfSample* sample) override {
+        if (!sample) return;
+        here().bounce = *sample;
+        throughput_ *= sample->weight;
+    }
+    void roulette(float q, bool survived) override {
+        here().roulette = {q, survived};
+        if (survived) throughput_ /= 1 - q;
+    }
+    void contribution(const Contribution& found) override { here().contributions.push_back(found); }
+
+  private:
+    PathVertex& here() { return vertices_.back(); }
+
+    std::vector<PathVertex>& vertices_;
+    vec3 throughput_{1};
+};
+
+}  // namespace
+
+PathRecord replay(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm, uint32_t x,
+                  uint32_t y, uint64_t index) {
+    const FlushDenormals flush;  // as while rendering
+    PathRecord record;
+    Recorder recorder(record.vertices);
+    Context context(scene, sensor.make_sampler(), &recorder);
+    const Ray ray = sensor.start(context.sampler, x, y, index);
+    record.radiance = algorithm.radiance(context, ray);
+    return record;
+}
+
+}  // namespace etendue

@@ -1,0 +1,77 @@
+#include "driver/techniques.h"
+
+#include <stdexcept>
+
+#include "driver/tiles.h"
+
+namespace etendue {
+
+/// Adds up what one sample found: the variance is that of whole samples, which may find light several times.
+class TechniqueObserver : public Observer {
+  public:
+    explicit TechniqueObserver(int max_edges)
+        : max_edges_(max_edges), found_(2 * TECHNIQUES.size() * max_edges) {}
+
+    void contribution(const Contribution& found) override {
+        const int edges = std::min(found.edges, max_edges_);
+        const size_t row = static_cast<size_t>(found.technique) * max_edges_ + edges - 1;
+        found_[row] += found.unweighted * found.weight;
+        found_[row + found_.size() / 2] += found.unweighted;
+        longest_ = std::max(longest_, edges);
+    }
+
+    /// Moves what was found to a pixel's sums, and begins anew. What is no finite number is left out, as from
+    /// the film.
+    void add_to(TechniqueFilm::Sums* sums) {
+        for (size_t row = 0; row < found_.size(); row += max_edges_) {
+            for (size_t i = row; i < row + longest_; ++i) {
+                const vec3 value = std::exchange(found_[i], vec3(0));
+                if (!(value.x >= 0 && value.y >= 0 && value.z >= 0 && max_component(value) < INFINITE))
+                    continue;
+                sums[i].sum += value;
+                sums[i].sum_squares += glm::dvec3(value) * glm::dvec3(value);
+            }
+        }
+        longest_ = 0;
+    }
+
+  private:
+    int max_edges_, longest_ = 0;
+    std::vector<vec3> found_;  // weighted, then unweighted; for each technique, by edges
+};
+
+TechniqueFilm::TechniqueFilm(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm,
+                             int max_edges, int threads)
+    : scene_(scene), sensor_(sensor), algorithm_(algorithm), max_edges_(max_edges), threads_(threads) {
+    if (max_edges < 1) throw std::invalid_argument("max_edges: at least 1 is needed");
+    sums_.resize(size_t{width()} * height() * slots());
+}
+
+bool TechniqueFilm::render(uint64_t samples) {
+    pixels_done_ = 0;
+    TileWorkers workers(threads_);
+    workers.for_each(Tiles(width(), height()), [&](uint32_t, const Tile& tile) {
+        TechniqueObserver observer(max_edges_);
+        Context context(scene_, sensor_.make_sampler(), &observer);
+        for (uint32_t y = tile.y0; y < tile.y1; ++y) {
+            for (uint32_t x = tile.x0; x < tile.x1 && !stop_; ++x) {
+                render_pixel(context, observer, x, y, samples);
+                ++pixels_done_;
+            }
+        }
+    });
+    if (stop_.exchange(false)) return false;
+    samples_ += samples;
+    return true;
+}
+
+void TechniqueFilm::render_pixel(Context& context, TechniqueObserver& observer, uint32_t x, uint32_t y,
+                                 uint64_t samples) {
+    for (uint64_t index = samples_; index < samples_ + samples; ++index) {
+        const Ray ray = sensor_.start(context.sampler, x, y, index);
+        algorithm_.radiance(context, ray);
+        observer.add_to(&sums_[slot(pixel(x, y), weighted, Technique::bsdf_sampling, 1)]);
+    }
+}
+
+}  // namespace etendue
