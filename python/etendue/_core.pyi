@@ -320,6 +320,12 @@ class Camera:
     @property
     def focal_depth(self) -> float: ...
 
+    def film_of(self, point: Sequence[float]) -> list[float] | None:
+        """
+        (2,): where the middle of the lens sees a point, in pixels from the top left corner, maybe outside of the image;
+        None behind a perspective camera.
+        """
+
     def rays(self, film: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], lens: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.float32], dict(shape=(None, 3))], Annotated[NDArray[numpy.float32], dict(shape=(None, 3))]]:
         """
         film: float32 (n, 2), pixels from the top left corner. lens: float32 (n, 2) in [0, 1). Returns origins and unit

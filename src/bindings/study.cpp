@@ -367,6 +367,16 @@ void bind_camera(nb::module_& m) {
         .def_prop_ro("height", &Camera::height)
         .def_prop_ro("focal_depth", [](const Camera& c) { return c.settings().focal_depth; })
         .def(
+            "film_of",
+            [](const Camera& c, const std::array<float, 3>& point) -> std::optional<std::array<float, 2>> {
+                const auto film = c.film_of(to_vec3(point));
+                return film ? std::optional(std::array{film->x, film->y}) : std::nullopt;
+            },
+            nb::arg("point"),
+            "(2,): where the middle of the lens sees a point, in pixels from the top left corner, maybe "
+            "outside of "
+            "the image;\nNone behind a perspective camera.")
+        .def(
             "rays",
             [](const Camera& camera, const Vectors2& film, const Vectors2& lens) {
                 require_same_length(film.shape(0), lens.shape(0), "film and lens");

@@ -28,6 +28,19 @@ Ray Camera::pinhole_ray(const vec2& film) const {
     return {settings_.pos, glm::normalize(forward_ + tan_half_fov_ * (x * right_ + y * up_))};
 }
 
+std::optional<vec2> Camera::film_of(const vec3& point) const {
+    const vec2 size(width_, height_);
+    const vec3 to_point = point - settings_.pos;
+    const float ahead = glm::dot(to_point, forward_);
+    const vec2 aside(glm::dot(to_point, right_), glm::dot(to_point, up_));
+    if (settings_.perspective) {
+        if (!(ahead > 0)) return std::nullopt;
+        return 0.5f * (size + size.y / (tan_half_fov_ * ahead) * vec2(aside.x, -aside.y));
+    }
+    const float phi = std::atan2(aside.x, ahead), theta = std::acos(aside.y / glm::length(to_point));
+    return vec2(size.x * (phi / (2 * PI) + 0.5f), size.y * theta / PI);
+}
+
 Ray Camera::ray(const vec2& film, const vec2& u_lens) const {
     const Ray through_centre = pinhole_ray(film);
     if (settings_.lens_radius <= 0 || !settings_.perspective) return through_centre;

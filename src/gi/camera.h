@@ -1,6 +1,8 @@
 // The sensor: from a point on the film and a point on the lens to a ray.
 #pragma once
 
+#include <optional>
+
 #include "gi/ray.h"
 #include "gi/sampling.h"
 
@@ -26,6 +28,10 @@ class Camera {
 
     /// The same for the pinhole in the middle of the lens.
     Ray pinhole_ray(const vec2& film) const;
+
+    /// Where that pinhole sees a point: the inverse of the above. Empty behind a perspective camera; may be
+    /// outside of the film.
+    std::optional<vec2> film_of(const vec3& point) const;
 
     const CameraSettings& settings() const { return settings_; }
     uint32_t width() const { return width_; }

@@ -172,7 +172,7 @@ def save_pixels(
     file: Path, pixels: NDArray[np.float32] | NDArray[np.uint8], attributes: Mapping[str, Attribute]
 ) -> None:
     """Write (height, width, 3) pixels, float32 as linear and uint8 as sRGB; raises EtendueError."""
-    data = _encoded(file, pixels, attributes)
+    data = encoded(file, pixels, attributes)
     outputs.write(file, lambda temporary: _store(temporary, data))
 
 
@@ -180,7 +180,7 @@ def _store(path: Path, data: bytes) -> None:
     path.write_bytes(data)
 
 
-def _encoded(path: Path, pixels: NDArray[Any], attributes: Mapping[str, Attribute]) -> bytes:
+def encoded(path: Path, pixels: NDArray[Any], attributes: Mapping[str, Attribute]) -> bytes:
     """The content of the image file `path`.
 
     Encoded in memory, because on a full disk the libraries behind OpenImageIO leave half a PNG file without a

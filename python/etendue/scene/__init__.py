@@ -22,6 +22,7 @@ from ..film.sample_ranges import Range
 if TYPE_CHECKING:
     from .. import _core
     from ..film.fingerprint import Contents
+    from ..replay import Replay
 
 _SECTIONS = ("framebuffer", "camera", "scene")
 
@@ -113,6 +114,35 @@ class Scene:
         if film.interrupted and film.samples == 0:
             raise KeyboardInterrupt
         return film
+
+    def replay(
+        self,
+        pixel: tuple[int, int],
+        sample: int,
+        algorithm: str | None = None,
+        seed: int | None = None,
+        size: tuple[int, int] | None = None,
+        **parameters: Any,
+    ) -> Replay:
+        """The path of one sample of a pixel, vertex by vertex, as `render` with the same arguments takes it.
+
+        pixel: (x, y) from the top left corner. sample: its index, from 0. Raises EtendueError where the image
+        has no such pixel, SceneError for a value that is not allowed.
+        """
+        from .. import _core
+        from ..replay import Replay
+
+        config = self._changed(None, size, algorithm, seed, parameters)
+        (x, y), framebuffer = pixel, config.framebuffer
+        if not (0 <= x < framebuffer.res_w and 0 <= y < framebuffer.res_h):
+            raise EtendueError(
+                f"pixel {x},{y}: the image is {framebuffer.res_w}x{framebuffer.res_h}, so x is 0 to "
+                f"{framebuffer.res_w - 1} and y 0 to {framebuffer.res_h - 1}"
+            )
+        if not 0 <= sample < 2**63:
+            raise EtendueError(f"sample {sample}: an index from 0 to 2^63 - 1 is needed")
+        path = _core.replay(self._renderer(config, 1, 0), x, y, sample)
+        return Replay((x, y), sample, config.algorithm, path)
 
     def _goal(self, spp: int | None, samples: Sequence[int] | None, resume: Film | None) -> Range | None:
         """The range of samples to reach; None: what the scene file says."""

@@ -11,7 +11,8 @@ from ...errors import EtendueError
 from ..app import DataFolders, Settings, Size, app, parse_size, reported, require_folders
 
 
-def _algorithm_names() -> list[str]:
+def algorithm_names() -> list[str]:
+    """What --algorithm may be."""
     from ... import _core
 
     return [info.name for info in _core.algorithms()]
@@ -61,7 +62,7 @@ def render(
         typer.Option(
             "--algorithm",
             metavar="NAME",
-            autocompletion=_algorithm_names,
+            autocompletion=algorithm_names,
             help="The estimator (see: etendue algorithms).",
         ),
     ] = None,

@@ -1,0 +1,36 @@
+"""What `etendue replay` does."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..config import read_config
+from ..errors import EtendueError
+from .render import overrides_of
+
+
+def replay(
+    path: Path,
+    pixel: tuple[int, int],
+    sample: int,
+    output: Path | None,
+    algorithm: str | None,
+    seed: int | None,
+    data_dirs: Sequence[Path],
+    settings: Sequence[str],
+) -> str:
+    """The path in lines for people, after drawing it to `output`; raises EtendueError."""
+    from .. import scene as scenes
+
+    if output is not None and output.suffix.lower() != ".svg":
+        raise EtendueError(f'{output}: paths are drawn as .svg, not as "{output.suffix}"')
+    config = read_config(path, overrides_of(algorithm, None, None, seed, settings), data_dirs)
+    for name in config.scenes_to_build(data_dirs):
+        print(f"building the bundled scene {name}, this once", file=sys.stderr, flush=True)
+    scene = scenes.load(config, data_dirs=data_dirs)
+    told = scene.replay(pixel, sample)
+    if output is not None:
+        told.save(output, scene)
+    return str(told)
