@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import resource
 import signal
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-SECONDS = 10
+SECONDS = 10  # of the processor, so that a busy machine is no hang
+ASLEEP = 120  # by the clock, for what waits without end
 BYTES = 2 << 30
 
 
@@ -16,7 +18,7 @@ class Hang(BaseException):
 
 
 def _hang(*_: object) -> None:
-    raise Hang(f"no answer within {SECONDS} s")
+    raise Hang(f"no answer within {SECONDS} s of the processor, or {ASLEEP} s in all")
 
 
 def _address_space() -> int:
@@ -26,22 +28,25 @@ def _address_space() -> int:
 
 @contextmanager
 def limits() -> Iterator[None]:
-    """BYTES of memory on top of what is in use, else MemoryError; SECONDS of time, else Hang.
+    """BYTES of memory on top of what is in use, else MemoryError; SECONDS of work, else Hang.
 
-    A library that hangs hears no signal; then the kernel ends the process after twice the time.
+    A library that hangs hears no signal; then the kernel ends the process after twice the work.
     """
-    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
-    handler = signal.signal(signal.SIGALRM, _hang)
-    resource.setrlimit(resource.RLIMIT_AS, (_address_space() + BYTES, hard))
-    signal.setitimer(signal.ITIMER_PROF, 2 * SECONDS)
-    signal.alarm(SECONDS)
+    memory, processor = resource.getrlimit(resource.RLIMIT_AS), resource.getrlimit(resource.RLIMIT_CPU)
+    handlers = {number: signal.signal(number, _hang) for number in (signal.SIGPROF, signal.SIGALRM)}
+    resource.setrlimit(resource.RLIMIT_AS, (_address_space() + BYTES, memory[1]))
+    resource.setrlimit(resource.RLIMIT_CPU, (int(time.process_time()) + 2 * SECONDS, processor[1]))
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
+    signal.alarm(ASLEEP)
     try:
         yield
     finally:
         signal.alarm(0)
         signal.setitimer(signal.ITIMER_PROF, 0)
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
-        signal.signal(signal.SIGALRM, handler)
+        resource.setrlimit(resource.RLIMIT_CPU, processor)
+        resource.setrlimit(resource.RLIMIT_AS, memory)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
 
 
 def ran_out_of_memory(error: BaseException) -> bool:
