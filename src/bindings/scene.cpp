@@ -114,32 +114,48 @@ Sky make_sky(std::optional<In<float, nb::shape<-1, -1, 3>>> pixels, float intens
     return sky;
 }
 
-std::shared_ptr<Scene> make_scene(std::vector<Mesh> meshes, const std::vector<PythonMaterial>& materials,
-                                  const std::vector<std::shared_ptr<Texture>>& textures,
-                                  std::optional<Sky> sky) {
+using Textures = std::vector<std::shared_ptr<const Texture>>;
+
+/// The materials with their textures looked up.
+std::vector<Material> materials_of(const std::vector<PythonMaterial>& materials, const Textures& textures) {
     const auto texture = [&](int index) -> const Texture* {
         if (index == -1) return nullptr;
         if (index < 0 || static_cast<size_t>(index) >= textures.size())
             throw std::invalid_argument("no such texture");
         return textures[index].get();
     };
-    Scene::Data data;
+    std::vector<Material> found;
     for (const PythonMaterial& python : materials) {
-        Material& material = data.materials.emplace_back(python.material);
+        Material& material = found.emplace_back(python.material);
         material.albedo_texture = texture(python.albedo_texture);
         material.emission_texture = texture(python.emission_texture);
         material.normal_texture = texture(python.normal_texture);
         material.cutout_texture = texture(python.cutout_texture);
     }
+    return found;
+}
+
+std::shared_ptr<Scene> make_scene(std::vector<Mesh> meshes, const std::vector<PythonMaterial>& materials,
+                                  const std::vector<std::shared_ptr<Texture>>& textures,
+                                  std::optional<Sky> sky) {
+    Scene::Data data;
+    data.textures.assign(textures.begin(), textures.end());
+    data.materials = materials_of(materials, data.textures);
     for (const Mesh& mesh : meshes) {
         if (mesh.material >= materials.size())
             throw std::invalid_argument("a mesh names a material that is not there");
     }
     data.meshes = std::move(meshes);
-    data.textures.assign(textures.begin(), textures.end());
     data.sky = std::move(sky);
     const nb::gil_scoped_release release;
     return std::make_shared<Scene>(std::move(data));
+}
+
+std::shared_ptr<Scene> relit_scene(const Scene& scene, const std::vector<PythonMaterial>& materials,
+                                   std::optional<Sky> sky) {
+    std::vector<Material> changed = materials_of(materials, scene.textures());
+    const nb::gil_scoped_release release;
+    return std::make_shared<Scene>(scene, std::move(changed), std::move(sky));
 }
 
 }  // namespace
@@ -186,6 +202,11 @@ void bind_scene(nb::module_& m) {
              nb::arg("textures") = std::vector<std::shared_ptr<Texture>>{}, nb::arg("sky") = nb::none(),
              "Copies the meshes and builds the acceleration structure on all cores. Raises ValueError for an "
              "index out of range.")
+        .def(
+            "with_materials", &relit_scene, nb::arg("materials"), nb::arg("sky") = nb::none(),
+            "The same geometry, textures and cut-outs, which the two scenes share, under other materials and "
+            "another sky. Quick,\n"
+            "as no acceleration structure is built. Raises ValueError for an index out of range.")
         .def_prop_ro("triangle_count", [](const Scene& s) { return s.triangle_count(); })
         .def_prop_ro(
             "memory_bytes", [](const Scene& s) { return s.memory_bytes(); },

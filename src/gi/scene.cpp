@@ -16,13 +16,13 @@ namespace {
 /// A hit of a surface that is cut out there is no hit.
 void cutout_filter(const RTCFilterFunctionNArguments* args) {
     const auto* const mesh_and_material =
-        static_cast<const std::pair<const Mesh*, const Material*>*>(args->geometryUserPtr);
+        static_cast<const std::pair<const Mesh*, Material>*>(args->geometryUserPtr);
     const auto& [mesh, material] = *mesh_and_material;
     for (uint32_t i = 0; i < args->N; ++i) {
         if (args->valid[i] == 0) continue;
         const vec2 b(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
         const uint32_t triangle = RTCHitN_primID(args->hit, args->N, i);
-        if (material->is_cut_out(mesh->uv(triangle, b))) args->valid[i] = 0;
+        if (material.is_cut_out(mesh->uv(triangle, b))) args->valid[i] = 0;
     }
 }
 
@@ -38,21 +38,32 @@ RTCRay to_embree(const Ray& ray) {
 
 }  // namespace
 
-struct Scene::Accelerator {
+struct Scene::Geometry {
+    std::vector<Mesh> meshes;
+    std::vector<std::shared_ptr<const Texture>> textures;
+    vec3 lower{INFINITE}, upper{-INFINITE};
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     std::atomic<ssize_t> bytes = 0;
-    std::vector<std::pair<const Mesh*, const Material*>> cut_outs;  // what the filters see
+    std::vector<std::pair<const Mesh*, Material>> cut_outs;  // what the filters see
 
-    explicit Accelerator(const Data& data) : device(rtcNewDevice(nullptr)) {
+    Geometry(std::vector<Mesh> all_meshes, std::vector<std::shared_ptr<const Texture>> all_textures,
+             const std::vector<Material>& materials)
+        : meshes(std::move(all_meshes)), textures(std::move(all_textures)), device(rtcNewDevice(nullptr)) {
         if (!device) throw std::runtime_error("Embree found no way to run on this processor");
+        for (const Mesh& mesh : meshes) {
+            for (size_t i = 0; i < mesh.vertex_count(); ++i) {
+                lower = glm::min(lower, mesh.vertices[i]);
+                upper = glm::max(upper, mesh.vertices[i]);
+            }
+        }
         rtcSetDeviceMemoryMonitorFunction(device, &count_bytes, this);
         scene = rtcNewScene(device);
         // Robust: no ray slips between two triangles that share an edge.
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-        cut_outs.reserve(data.meshes.size());
-        for (const Mesh& mesh : data.meshes) add(mesh, data.materials[mesh.material]);
+        cut_outs.reserve(meshes.size());
+        for (const Mesh& mesh : meshes) add(mesh, materials[mesh.material]);
         rtcCommitScene(scene);
         if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
             release();
@@ -60,9 +71,9 @@ struct Scene::Accelerator {
         }
     }
 
-    Accelerator(const Accelerator&) = delete;
-    Accelerator& operator=(const Accelerator&) = delete;
-    ~Accelerator() { release(); }
+    Geometry(const Geometry&) = delete;
+    Geometry& operator=(const Geometry&) = delete;
+    ~Geometry() { release(); }
 
     void release() {
         rtcReleaseScene(scene);
@@ -78,7 +89,7 @@ struct Scene::Accelerator {
                                    mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
                                    mesh.triangles.size());
         if (material.cutout_texture) {
-            rtcSetGeometryUserData(geometry, &cut_outs.emplace_back(&mesh, &material));
+            rtcSetGeometryUserData(geometry, &cut_outs.emplace_back(&mesh, material));
             rtcSetGeometryIntersectFilterFunction(geometry, &cutout_filter);
             rtcSetGeometryOccludedFilterFunction(geometry, &cutout_filter);
         }
@@ -88,24 +99,34 @@ struct Scene::Accelerator {
     }
 
     static bool count_bytes(void* self, ssize_t bytes, bool) {
-        static_cast<Accelerator*>(self)->bytes += bytes;
+        static_cast<Geometry*>(self)->bytes += bytes;
         return true;
     }
 };
 
-Scene::Scene(Data data) : data_(std::move(data)), mesh_lights_(data_.meshes.size(), nullptr) {
-    for (const Mesh& mesh : data_.meshes) {
-        for (size_t i = 0; i < mesh.vertex_count(); ++i) {
-            lower_ = glm::min(lower_, mesh.vertices[i]);
-            upper_ = glm::max(upper_, mesh.vertices[i]);
-        }
+// In braces, as the materials are looked at before they are moved.
+Scene::Scene(Data data)
+    : Scene{std::make_shared<Geometry>(std::move(data.meshes), std::move(data.textures), data.materials),
+            std::move(data.materials), std::move(data.sky)} {}
+
+Scene::Scene(const Scene& other, std::vector<Material> materials, std::optional<Sky> sky)
+    : Scene(other.geometry_, std::move(materials), std::move(sky)) {}
+
+Scene::Scene(std::shared_ptr<const Geometry> geometry, std::vector<Material> materials,
+             std::optional<Sky> sky)
+    : geometry_(std::move(geometry)),
+      materials_(std::move(materials)),
+      sky_image_(std::move(sky)),
+      mesh_lights_(geometry_->meshes.size(), nullptr) {
+    for (const Mesh& mesh : meshes()) {
+        if (mesh.material >= materials_.size())
+            throw std::invalid_argument("a mesh names a material that is not there");
     }
-    accelerator_ = std::make_unique<Accelerator>(data_);
-    const float radius = lower_.x <= upper_.x ? glm::length(upper_ - lower_) / 2 : 1.f;
-    lights_ = Light::find_all({data_.meshes, data_.materials, data_.sky ? &*data_.sky : nullptr, radius});
+    const float radius = lower().x <= upper().x ? glm::length(upper() - lower()) / 2 : 1.f;
+    lights_ = Light::find_all({meshes(), materials_, sky_image_ ? &*sky_image_ : nullptr, radius});
     for (const Light& light : lights_) {
         if (light.mesh()) {
-            mesh_lights_[light.mesh() - data_.meshes.data()] = &light;
+            mesh_lights_[light.mesh() - meshes().data()] = &light;
         } else {
             sky_ = &light;
         }
@@ -113,57 +134,60 @@ Scene::Scene(Data data) : data_(std::move(data)), mesh_lights_(data_.meshes.size
     light_sampler_ = LightSampler(lights_);
 }
 
-Scene::~Scene() = default;
+const std::vector<Mesh>& Scene::meshes() const { return geometry_->meshes; }
+const std::vector<std::shared_ptr<const Texture>>& Scene::textures() const { return geometry_->textures; }
+const vec3& Scene::lower() const { return geometry_->lower; }
+const vec3& Scene::upper() const { return geometry_->upper; }
 
 SurfaceHit Scene::intersect(const Ray& ray) const {
     RTCRayHit query{};
     query.ray = to_embree(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(accelerator_->scene, &query);
+    rtcIntersect1(geometry_->scene, &query);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(accelerator_->scene, &context, &query);
+    rtcIntersect1(geometry_->scene, &context, &query);
 #endif
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {ray, sky_};
-    const Mesh& mesh = data_.meshes[query.hit.geomID];
+    const Mesh& mesh = geometry_->meshes[query.hit.geomID];
     const vec2 barycentrics(query.hit.u, query.hit.v);
     return {ray,
             query.ray.tfar,
             mesh,
             query.hit.primID,
             barycentrics,
-            data_.materials[mesh.material],
+            materials_[mesh.material],
             mesh_lights_[query.hit.geomID]};
 }
 
 bool Scene::occluded(const Ray& ray) const {
     RTCRay query = to_embree(ray);
 #if RTC_VERSION_MAJOR >= 4
-    rtcOccluded1(accelerator_->scene, &query);
+    rtcOccluded1(geometry_->scene, &query);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(accelerator_->scene, &context, &query);
+    rtcOccluded1(geometry_->scene, &context, &query);
 #endif
     return query.tfar < 0;
 }
 
 size_t Scene::triangle_count() const {
     size_t count = 0;
-    for (const Mesh& mesh : data_.meshes) count += mesh.triangles.size();
+    for (const Mesh& mesh : meshes()) count += mesh.triangles.size();
     return count;
 }
 
 size_t Scene::memory_bytes() const {
-    size_t bytes = static_cast<size_t>(accelerator_->bytes.load());
-    for (const Mesh& mesh : data_.meshes) {
+    size_t bytes = static_cast<size_t>(geometry_->bytes.load());
+    for (const Mesh& mesh : meshes()) {
         bytes += (mesh.vertices.size() + mesh.normals.size()) * sizeof(vec3) +
                  mesh.uvs.size() * sizeof(vec2) + mesh.triangles.size() * sizeof(mesh.triangles[0]);
     }
-    for (const auto& texture : data_.textures) bytes += texture->memory_bytes();
-    if (data_.sky) bytes += data_.sky->pixels.size() * (sizeof(vec3) + sizeof(float));
+    for (const auto& texture : textures()) bytes += texture->memory_bytes();
+    if (sky_image_) bytes += sky_image_->pixels.size() * (sizeof(vec3) + sizeof(float));
     return bytes;
 }
 

@@ -19,7 +19,13 @@ class Scene {
 
     /// Builds the acceleration structure on all cores. Throws std::runtime_error where Embree cannot.
     explicit Scene(Data data);
-    ~Scene();
+    /// Another scene's geometry, textures and cut-outs, which the two share, under other materials and another
+    /// sky: only the lights are found anew. Throws std::invalid_argument where a mesh's material is missing.
+    Scene(const Scene& other, std::vector<Material> materials, std::optional<Sky> sky);
+
+    // Lights point into the scene.
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
 
     /// What the ray finds first.
     SurfaceHit intersect(const Ray& ray) const;
@@ -34,22 +40,25 @@ class Scene {
     float light_source_pdf(const Light* light) const { return light_sampler_.pmf(light); }
 
     const std::vector<Light>& lights() const { return lights_; }
-    const std::vector<Mesh>& meshes() const { return data_.meshes; }
-    const std::vector<Material>& materials() const { return data_.materials; }
+    const std::vector<Mesh>& meshes() const;
+    const std::vector<Material>& materials() const { return materials_; }
+    const std::vector<std::shared_ptr<const Texture>>& textures() const;
     size_t triangle_count() const;
     /// Bytes of arrays, textures and the acceleration structure.
     size_t memory_bytes() const;
 
     /// Axis-aligned bounds of all vertices; lower > upper in an empty scene.
-    const vec3& lower() const { return lower_; }
-    const vec3& upper() const { return upper_; }
+    const vec3& lower() const;
+    const vec3& upper() const;
 
   private:
-    struct Accelerator;
+    struct Geometry;
 
-    Data data_;
-    vec3 lower_{INFINITE}, upper_{-INFINITE};
-    std::unique_ptr<Accelerator> accelerator_;
+    Scene(std::shared_ptr<const Geometry> geometry, std::vector<Material> materials, std::optional<Sky> sky);
+
+    std::shared_ptr<const Geometry> geometry_;
+    std::vector<Material> materials_;
+    std::optional<Sky> sky_image_;
     std::vector<Light> lights_;
     std::vector<const Light*> mesh_lights_;  // one a mesh, null where it does not emit
     const Light* sky_ = nullptr;

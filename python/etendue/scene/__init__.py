@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .. import _core
     from ..film.fingerprint import Contents
     from ..replay import Replay
+    from .surfaces import Surfaces
 
 _SECTIONS = ("framebuffer", "camera", "scene")
 
@@ -32,6 +33,7 @@ class Scene:
     """A scene in memory; made by `load`.
 
     config: the scene file. core: the compiled core's scene. focal_depth: the camera's, after auto focus.
+    surfaces: materials and sky as the files have them.
     warnings: what will not look as its author may expect. load_seconds: time that loading took.
     contents: name and digest of what files brought in. data_dirs: folders in which they were looked for.
     """
@@ -39,6 +41,7 @@ class Scene:
     config: Config
     core: _core.Scene
     focal_depth: float
+    surfaces: Surfaces
     warnings: list[Problem] = field(default_factory=list)
     load_seconds: float = 0.0
     contents: Contents = field(default_factory=dict)
@@ -144,6 +147,37 @@ class Scene:
         path = _core.replay(self._renderer(config, 1, 0), x, y, sample)
         return Replay((x, y), sample, config.algorithm, path)
 
+    def renderer(self, threads: int = 0, first_sample: int = 0) -> _core.Renderer:
+        """A renderer of what the scene file says, without samples yet; for who renders in steps of his own."""
+        return self._renderer(self.config, threads, first_sample)
+
+    def empty_film(self) -> Film:
+        """The film that `renderer` begins with: no samples, and where they are going to come from."""
+        framebuffer = self.config.framebuffer
+        origin = Origin.of(self.config, self.contents, self.data_dirs)
+        film = Film.empty(framebuffer.res_w, framebuffer.res_h)
+        return dataclasses.replace(
+            film, goal=(0, framebuffer.sppx), origin=origin, exposure=framebuffer.exposure
+        )
+
+    def changed(self, config: Config) -> Scene:
+        """The scene of another config, which keeps what it has of the same files.
+
+        Camera, settings, materials and the sky's strength change without reading a file or building an
+        acceleration structure. Raises SceneError with every problem.
+        """
+        before, after = self.config.scene, config.scene
+        files = [(s.mesh_files, s.sky and s.sky.envmap) for s in (before, after)]
+        if files[0] != files[1] or self.config.folder != config.folder:
+            return load(config, self.data_dirs)
+        core = self.core
+        if before != after:
+            core = core.with_materials(self.surfaces.materials(after), self.surfaces.sky(after.sky))
+        focal_depth = config.camera.focal_depth
+        if config.camera.lens_radius > 0:  # a pinhole has no focus
+            focal_depth = _focal_depth(config, core)
+        return dataclasses.replace(self, config=config, core=core, focal_depth=focal_depth)
+
     def _goal(self, spp: int | None, samples: Sequence[int] | None, resume: Film | None) -> Range | None:
         """The range of samples to reach; None: what the scene file says."""
         if samples is not None:
@@ -239,13 +273,20 @@ def load(
             'type contains "light", shines, and so does a sky'
         )
         found.append(config.problem(("scene",), message))
-    focal_depth = config.camera.focal_depth
-    if config.auto_focus and config.camera.perspective:
-        focal_depth = _core.auto_focus(core, _camera(config, focal_depth))
+    focal_depth = _focal_depth(config, core)
     if warnings is not None:
         warnings += found
     seconds = time.perf_counter() - start
-    return Scene(config, core, focal_depth, found, seconds, parts.contents, tuple(data_dirs))
+    return Scene(config, core, focal_depth, parts.surfaces, found, seconds, parts.contents, tuple(data_dirs))
+
+
+def _focal_depth(config: Config, core: _core.Scene) -> float:
+    from .. import _core
+
+    focal_depth = config.camera.focal_depth
+    if not (config.auto_focus and config.camera.perspective):
+        return focal_depth
+    return _core.auto_focus(core, _camera(config, focal_depth))
 
 
 def _unit(direction: Vec3) -> Vec3:

@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 from .. import _core
 from ..config import Config
 from ..config.located_json import Loc
-from ..config.patches import merged
 from ..errors import EtendueError, Problem, SceneError, nearest_name
 from ..film import fingerprint
 from ..loaders.image import load_image
 from ..loaders.mesh import load_mesh
 from ..loaders.types import Material, Mesh, MeshFile
-from .materials import Resolved, resolve
+from .surfaces import Surface, Surfaces
 from .textures import NONE, Textures
 
 Result = TypeVar("Result")
@@ -37,12 +36,11 @@ class Parts:
         self._problems: list[Problem] = []
         self.warnings: list[Problem] = []
         self.meshes: list[_core.Mesh] = []
-        self.materials: list[_core.Material] = []
-        self.sky: _core.Sky | None = None
+        self.surfaces = Surfaces()
         self._environment: tuple[str, NDArray[np.float32]] | None = None
         files = self._mesh_files()
         self._read_sky()
-        if not self._problems and not files and self.sky is None:
+        if not self._problems and not files and config.scene.sky is None:
             message = "an empty scene: it names no mesh file and has no sky"
             self._problems.append(config.problem(("scene",), message))
         if self._problems:
@@ -50,6 +48,8 @@ class Parts:
         notes: list[str] = []
         self._textures = Textures(notes)
         self._add(files)
+        self.materials = self.surfaces.materials(config.scene)
+        self.sky = self.surfaces.sky(config.scene.sky)
         self.textures = [_core.Texture(image.pixels, image.srgb) for image in self._textures.images]
         self.contents = fingerprint.contents(files, self._textures.images, self._environment)
         self.warnings += [Problem(note) for note in notes]
@@ -89,78 +89,64 @@ class Parts:
 
     def _read_sky(self) -> None:
         sky = self._config.scene.sky
-        if sky is None:
+        if sky is None or sky.envmap is None:
             return
-        pixels = None
-        if sky.envmap is not None:
-            name, notes = sky.envmap, list[str]()
-            image = self._tried(
-                ("scene", "sky", "envmap"), lambda: load_image(self._find(name), "environment", notes)
-            )
-            if image is None:
-                return
-            pixels = np.asarray(image.pixels, np.float32)
-            self._environment = name, pixels
-            self.warnings += [Problem(note) for note in notes]
-        self.sky = _core.Sky(pixels, sky.intensity, sky.scene_radius)
+        name, notes = sky.envmap, list[str]()
+        image = self._tried(
+            ("scene", "sky", "envmap"), lambda: load_image(self._find(name), "environment", notes)
+        )
+        if image is None:
+            return
+        self.surfaces.environment = np.asarray(image.pixels, np.float32)
+        self._environment = name, self.surfaces.environment
+        self.warnings += [Problem(note) for note in notes]
 
     def _add(self, files: list[MeshFile]) -> None:
-        patches = merged(self._config.scene.materials)
-        types = _core.material_types()
-        bright: dict[str, Resolved] = {}
         self._textures.read_ahead(
             file.materials[mesh.material] for file in files for mesh in file.meshes if mesh.uvs is not None
         )
         for file in files:
-            resolved = [resolve(material, patches.get(material.name), types) for material in file.materials]
             for mesh in file.meshes:
-                material = resolved[mesh.material]
-                # A texture goes before the colour, and a light reflects nothing.
-                plain = file.materials[mesh.material].albedo_texture is None
-                if max(material.albedo) > 1 and plain and material.type != "light":
-                    bright[material.name] = material
                 self.meshes.append(
-                    _core.Mesh(mesh.vertices, mesh.triangles, mesh.normals, mesh.uvs, len(self.materials))
+                    _core.Mesh(
+                        mesh.vertices, mesh.triangles, mesh.normals, mesh.uvs, len(self.surfaces.of_meshes)
+                    )
                 )
-                self.materials.append(self._material(file, mesh, file.materials[mesh.material], material))
+                material = file.materials[mesh.material]
+                self.surfaces.of_meshes.append(Surface.of(material, self._textures_of(file, mesh, material)))
         self._warn_of_patches({material.name for file in files for material in file.materials})
-        for material in bright.values():
-            text = " ".join(f"{value:g}" for value in material.albedo)
-            self.warnings.append(
-                Problem(
-                    f'material "{material.name}": an albedo above 1 ({text}) reflects more light than arrives'
-                )
-            )
+        self._warn_of_bright()
 
-    def _material(self, file: MeshFile, mesh: Mesh, source: Material, material: Resolved) -> _core.Material:
-        textures = dict.fromkeys(("albedo", "emission", "normal", "cutout"), NONE)
-        wanted = (
-            source.albedo_texture,
-            source.emission_texture,
-            source.normal_texture,
-            source.cutout_texture,
-        )
+    def _textures_of(self, file: MeshFile, mesh: Mesh, material: Material) -> tuple[int, int, int, int]:
         if mesh.uvs is not None:
-            textures["albedo"] = self._textures.colour(source.albedo_texture)
-            textures["emission"] = self._textures.colour(source.emission_texture)
-            textures["normal"] = self._textures.normal(source.normal_texture)
-            textures["cutout"] = self._textures.cutout(source.cutout_texture, source.albedo_texture)
-        elif any(texture is not None for texture in wanted):
+            return (
+                self._textures.colour(material.albedo_texture),
+                self._textures.colour(material.emission_texture),
+                self._textures.normal(material.normal_texture),
+                self._textures.cutout(material.cutout_texture, material.albedo_texture),
+            )
+        wanted = (
+            material.albedo_texture,
+            material.emission_texture,
+            material.normal_texture,
+            material.cutout_texture,
+        )
+        if any(texture is not None for texture in wanted):
             message = (
-                f'{file.path}: material "{source.name}" has textures, but its mesh has no texture coordinates'
+                f'{file.path}: material "{material.name}" has textures, but its mesh has no texture '
+                "coordinates"
             )
             self.warnings.append(Problem(f"{message}; the plain colour is used"))
-        return _core.Material(
-            material.name,
-            material.type,
-            material.albedo,
-            material.ior,
-            material.roughness,
-            material.absorb,
-            material.coated,
-            material.emissive_strength,
-            *textures.values(),
-        )
+        return NONE, NONE, NONE, NONE
+
+    def _warn_of_bright(self) -> None:
+        # A texture goes before the colour, and a light reflects nothing.
+        plain = {s.material.name for s in self.surfaces.of_meshes if s.material.albedo_texture is None}
+        for name, material in self.surfaces.resolved(self._config.scene).items():
+            if max(material.albedo) > 1 and name in plain and material.type != "light":
+                text = " ".join(f"{value:g}" for value in material.albedo)
+                message = f'material "{name}": an albedo above 1 ({text}) reflects more light than arrives'
+                self.warnings.append(Problem(message))
 
     def _warn_of_patches(self, names: set[str]) -> None:
         for index, patch in enumerate(self._config.scene.materials):
