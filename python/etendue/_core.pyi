@@ -160,6 +160,12 @@ class Scene:
         Copies the meshes and builds the acceleration structure on all cores. Raises ValueError for an index out of range.
         """
 
+    def with_materials(self, materials: Sequence[Material], sky: Sky | None = None) -> Scene:
+        """
+        The same geometry, textures and cut-outs, which the two scenes share, under other materials and another sky. Quick,
+        as no acceleration structure is built. Raises ValueError for an index out of range.
+        """
+
     @property
     def triangle_count(self) -> int: ...
 
@@ -409,6 +415,25 @@ class Renderer:
     @property
     def invalid(self) -> list[tuple[int, int, int]]:
         """The first thousand of them: (x, y, sample)."""
+
+    def render_coarse(self, stride: int) -> bool:
+        """
+        Gives the pixels whose x and y are multiples of stride (1, 2, 4, 8 or 16) their first sample, which `render` then
+        need not take. Returns False where `cancel` ended it. Raises ValueError for another stride.
+        """
+
+    def picture(self, stride: int = 1) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3))]:
+        """
+        float32 (ceil(height / stride), ceil(width / stride), 3): mean radiance of every stride-th pixel. A pixel without
+        samples is as the nearest to its left and above that `render_coarse` gave one. May be called while another thread
+        renders. Raises ValueError for a stride that is not 1, 2, 4, 8 or 16.
+        """
+
+    def snapshot(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]]:
+        """
+        What `sum`, `sum_squares`, `half_sum`, `sample_count` and `invalid_per_pixel` give, of the same moment in each pixel,
+        also while another thread renders.
+        """
 
 class Contribution:
     """Light that a path brought to the camera."""

@@ -12,4 +12,5 @@ NB_MODULE(_core, m) {
     etendue::bind_study(m);
     etendue::bind_renderer(m);
     etendue::bind_paths(m);
+    etendue::bind_live(m);
 }

@@ -40,29 +40,41 @@ bool render(Renderer& renderer, uint64_t samples, const nb::object& progress,
                    });
 }
 
+/// Calls put(index, pixel) for all pixels, whether or not another thread renders them.
+template <class Put>
+void read(const Renderer& renderer, const Put& put) {
+    const nb::gil_scoped_release release;
+    renderer.read([&](const Tile& tile, const Film& film) {
+        for (size_t y = tile.y0; y < tile.y1; ++y) {
+            for (size_t i = y * film.width() + tile.x0; i < y * film.width() + tile.x1; ++i)
+                put(i, film.pixels()[i]);
+        }
+    });
+}
+
 template <class Value>
-Out<double, nb::shape<-1, -1, 3>> per_pixel(const Renderer& renderer, Value&& value) {
+Out<double, nb::shape<-1, -1, 3>> per_pixel(const Renderer& renderer, const Value& value) {
     const Film& film = renderer.film();
     auto out = new_array<Out<double, nb::shape<-1, -1, 3>>>({film.height(), film.width(), 3});
-    for (size_t i = 0; i < film.pixels().size(); ++i) {
-        const glm::dvec3 v = value(film.pixels()[i]);
+    read(renderer, [&](size_t i, const Pixel& pixel) {
+        const glm::dvec3 v = value(pixel);
         for (int c = 0; c < 3; ++c) out.data()[3 * i + c] = v[c];
-    }
+    });
     return out;
 }
 
 Out<float, nb::shape<-1, -1, 3>> mean(const Renderer& renderer) {
     const Film& film = renderer.film();
     auto out = new_array<Out<float, nb::shape<-1, -1, 3>>>({film.height(), film.width(), 3});
-    for (size_t i = 0; i < film.pixels().size(); ++i) set_vec3(out, i, film.pixels()[i].mean());
+    read(renderer, [&](size_t i, const Pixel& pixel) { set_vec3(out, i, pixel.mean()); });
     return out;
 }
 
 template <class Value>
-Out<uint64_t, nb::shape<-1, -1>> counts(const Renderer& renderer, Value&& value) {
+Out<uint64_t, nb::shape<-1, -1>> counts(const Renderer& renderer, const Value& value) {
     const Film& film = renderer.film();
     auto out = new_array<Out<uint64_t, nb::shape<-1, -1>>>({film.height(), film.width()});
-    for (size_t i = 0; i < film.pixels().size(); ++i) out.data()[i] = value(film.pixels()[i]);
+    read(renderer, [&](size_t i, const Pixel& pixel) { out.data()[i] = value(pixel); });
     return out;
 }
 

@@ -25,7 +25,9 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Alg
       algorithm_(std::move(algorithm)),
       first_sample_(settings.first_sample),
       threads_(thread_count(settings.threads)),
-      film_(camera.width(), camera.height()) {}
+      film_(camera.width(), camera.height()),
+      tiles_(camera.width(), camera.height()),
+      tile_mutexes_(tiles_.count()) {}
 
 void Renderer::resume(Film film) {
     if (film.width() != film_.width() || film.height() != film_.height()) {
@@ -38,7 +40,6 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     const Clock::time_point start = Clock::now();
     const double seconds_before = seconds_;
     TileWorkers workers(threads_);
-    const Tiles tiles(film_.width(), film_.height());
     uint64_t done = samples, taken = 0;
     for (const Pixel& pixel : film_.pixels()) {
         done = std::min(done, pixel.count);
@@ -50,8 +51,8 @@ bool Renderer::render(uint64_t samples, double time_limit) {
         const Clock::time_point pass_start = Clock::now();
         const bool may_stop = done > 0;
         done += std::min(pass, samples - done);
-        workers.for_each(tiles, [&](uint32_t, const Tile& tile) {
-            render_tile(tile, done);
+        workers.for_each(tiles_, [&](uint32_t index, const Tile&) {
+            render_tile(index, 1, done);
             if (may_stop && seconds_since(start) > time_limit) stop_ = true;
         });
         if (seconds_since(start) > time_limit) stop_ = true;
@@ -64,11 +65,22 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     return std::ranges::all_of(film_.pixels(), [&](const Pixel& pixel) { return pixel.count >= samples; });
 }
 
-void Renderer::render_tile(const Tile& tile, uint64_t samples) {
+bool Renderer::render_coarse(uint32_t stride) {
+    const Clock::time_point start = Clock::now();
+    TileWorkers(threads_).for_each(tiles_,
+                                   [&](uint32_t index, const Tile&) { render_tile(index, stride, 1); });
+    seconds_ = seconds_ + seconds_since(start);
+    return !stop_.exchange(false);
+}
+
+void Renderer::render_tile(uint32_t index, uint32_t stride, uint64_t samples) {
+    const Tile tile = tiles_[index];
+    const std::lock_guard lock(tile_mutexes_[index]);
     Context context(scene_, sensor_.make_sampler());
     uint64_t taken = 0;
-    for (uint32_t y = tile.y0; y < tile.y1; ++y) {
-        for (uint32_t x = tile.x0; x < tile.x1; ++x) taken += render_pixel(context, x, y, samples);
+    // A tile begins at a multiple of every stride that divides its side.
+    for (uint32_t y = tile.y0; y < tile.y1; y += stride) {
+        for (uint32_t x = tile.x0; x < tile.x1; x += stride) taken += render_pixel(context, x, y, samples);
     }
     rays_ += context.rays;
     samples_done_ += taken;

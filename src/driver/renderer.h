@@ -37,6 +37,10 @@ class Renderer {
     /// its count says. The limit does not stop the first sample of each pixel.
     bool render(uint64_t samples, double time_limit = INFINITE);
 
+    /// Gives the pixels whose x and y are multiples of `stride` their first sample: a coarse picture early, of
+    /// samples that `render` then need not take. False where it was cancelled.
+    bool render_coarse(uint32_t stride);
+
     /// Makes the running `render`, or else the next, return within a few milliseconds. From any thread.
     void cancel() { stop_ = true; }
 
@@ -46,7 +50,17 @@ class Renderer {
     const Scene& scene() const { return scene_; }
     const Sensor& sensor() const { return sensor_; }
     const Algorithm& algorithm() const { return *algorithm_; }
+    /// While nothing renders; `read` is for all other times.
     const Film& film() const { return film_; }
+    /// Calls visit(tile, film) for one tile after the other, each at a moment when nobody renders it: at any
+    /// time, from any thread.
+    template <class Visit>
+    void read(const Visit& visit) const {
+        for (uint32_t i = 0; i < tiles_.count(); ++i) {
+            const std::lock_guard lock(tile_mutexes_[i]);
+            visit(tiles_[i], film_);
+        }
+    }
     /// Goes on from another film of the same size, scene, settings and first sample. Throws
     /// std::invalid_argument for another size.
     void resume(Film film);
@@ -60,7 +74,7 @@ class Renderer {
     static constexpr size_t MAX_INVALID_LISTED = 1000;
 
   private:
-    void render_tile(const Tile& tile, uint64_t samples);
+    void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
     /// Returns how many samples it took.
     uint64_t render_pixel(Context& context, uint32_t x, uint32_t y, uint64_t samples);
     void report_invalid(const InvalidSample& sample);
@@ -71,6 +85,8 @@ class Renderer {
     uint64_t first_sample_;
     int threads_;
     Film film_;
+    Tiles tiles_;
+    mutable std::vector<std::mutex> tile_mutexes_;  // held by who renders a tile, or reads it
     std::atomic<bool> stop_ = false;
     std::atomic<uint64_t> rays_ = 0, samples_done_ = 0, invalid_count_ = 0;
     std::atomic<double> seconds_ = 0;

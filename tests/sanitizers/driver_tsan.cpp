@@ -51,12 +51,14 @@ std::unique_ptr<Renderer> renderer(const Scene& scene, int threads) {
     settings.pos = vec3(0, 1, 3);
     Renderer::Settings options;
     options.threads = threads;
-    return std::make_unique<Renderer>(scene, Camera(settings, 48, 48), make_algorithm("Pathtracer", {}), options);
+    return std::make_unique<Renderer>(scene, Camera(settings, 48, 48), make_algorithm("Pathtracer", {}),
+                                      options);
 }
 
 bool same(const Renderer& a, const Renderer& b) {
-    return std::ranges::equal(a.film().pixels(), b.film().pixels(),
-                              [](const Pixel& p, const Pixel& q) { return p.sum == q.sum && p.count == q.count; });
+    return std::ranges::equal(a.film().pixels(), b.film().pixels(), [](const Pixel& p, const Pixel& q) {
+        return p.sum == q.sum && p.count == q.count;
+    });
 }
 
 /// All that may be asked of a renderer while it renders.
@@ -65,6 +67,9 @@ void watch(const Renderer& renderer, const std::atomic<bool>& done) {
     while (!done) {
         seen += renderer.samples_done() + renderer.rays() + renderer.invalid_count();
         seen += renderer.invalid_samples().size() + (renderer.seconds() > 0);
+        renderer.read([&](const Tile& tile, const Film& film) {
+            seen += film.pixels()[size_t{tile.y0} * film.width() + tile.x0].count;
+        });
     }
     require(seen > 0, "a watched render reports something");
 }
@@ -86,6 +91,12 @@ int main() {
     watched(*three, 12);
     require(same(*one, *three), "threads do not change the picture");
 
+    const auto coarse = renderer(scene, 3);
+    for (const uint32_t stride : {16, 8, 2})
+        require(coarse->render_coarse(stride), "coarse passes are complete");
+    watched(*coarse, 12);
+    require(same(*one, *coarse), "coarse passes do not change the picture");
+
     const auto cancelled = renderer(scene, 3);
     std::thread stopper([&] {
         while (cancelled->samples_done() == 0) std::this_thread::yield();
@@ -106,6 +117,7 @@ int main() {
     const Scene blinding(world(INFINITE));
     const auto invalid = renderer(blinding, 3);
     watched(*invalid, 4);
-    require(invalid->invalid_count() > 0 && !invalid->invalid_samples().empty(), "invalid samples are listed");
+    require(invalid->invalid_count() > 0 && !invalid->invalid_samples().empty(),
+            "invalid samples are listed");
     std::puts("driver: ok");
 }

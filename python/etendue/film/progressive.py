@@ -91,28 +91,27 @@ def _render(
             if deadline is not None and time.monotonic() >= deadline:
                 break
             if steps.checkpoint is not None:
-                steps.checkpoint(_with(film, piece, renderer))
+                steps.checkpoint(grown(film, piece, renderer))
     except KeyboardInterrupt:
         interrupted = True
-    film = _with(film, piece, renderer)
+    film = grown(film, piece, renderer)
     film.interrupted = interrupted
     return film, not interrupted and film.partial is None and not sample_ranges.gaps(piece, film.ranges)
 
 
-def _with(film: Film, piece: Range, renderer: Renderer) -> Film:
-    """`film` as it is with what the renderer, which went on from it, has of `piece`."""
-    counts = renderer.sample_count()
+def grown(film: Film, piece: Range, renderer: Renderer) -> Film:
+    """`film` as it is with what the renderer, which goes on from it, has of `piece`; also while it renders."""
+    total, sum_squares, half_sum, counts, invalid = renderer.snapshot()
     fewest, most = int(counts.min()), int(counts.max())
     first = piece[0]
-    total, invalid = renderer.sum(), renderer.invalid_per_pixel()
     sample_count = counts + np.uint64(sample_ranges.count(film.ranges))
-    grown = dataclasses.replace(
+    result = dataclasses.replace(
         film,
         image=mean_of(total, sample_count, invalid),
         sample_count=sample_count,
         sum=total,
-        sum_squares=renderer.sum_squares(),
-        half_sum=renderer.half_sum(),
+        sum_squares=sum_squares,
+        half_sum=half_sum,
         invalid_per_pixel=invalid,
         rays=film.rays + renderer.rays,
         seconds=film.seconds + renderer.seconds,
@@ -121,6 +120,6 @@ def _with(film: Film, piece: Range, renderer: Renderer) -> Film:
         ranges=sample_ranges.union([*film.ranges, (first, first + fewest)]),
         partial=(first + fewest, first + most) if fewest < most else None,
     )
-    grown.complete = grown.missing == 0
-    grown.attributes = attributes_of(grown)
-    return grown
+    result.complete = result.missing == 0
+    result.attributes = attributes_of(result)
+    return result
