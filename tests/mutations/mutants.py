@@ -13,7 +13,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from .. import builds
+from ..builds import ROOT
 
 
 @dataclass(frozen=True)
@@ -260,24 +261,8 @@ def build(folder: Path) -> Path:
     for number, mutant in enumerate(MUTANTS, 1):
         path = sources / "src" / mutant.file
         path.write_text(mutate(path.read_text(), mutant, number))
-    nanobind = subprocess.run(
-        [sys.executable, "-m", "nanobind", "--cmake_dir"], capture_output=True, text=True, check=True
-    ).stdout.strip()
-    built = folder / "build"
-    run(
-        "cmake", "-S", sources, "-B", built, "-G", "Ninja", f"-DPython_EXECUTABLE={sys.executable}",
-        f"-Dnanobind_ROOT={nanobind}", f"-DCMAKE_CXX_FLAGS=-include {sources / 'mutant.h'}",
-    )  # fmt: skip
-    run("cmake", "--build", built, "--target", "_core")
-    return next(built.glob("_core*.so"))
-
-
-def run(*command: object) -> None:
-    done = subprocess.run(
-        [str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    )
-    if done.returncode:
-        raise RuntimeError(done.stdout[-4000:])
+    switch = f"-DCMAKE_CXX_FLAGS=-include {sources / 'mutant.h'}"
+    return builds.core_in(builds.build(folder / "build", "_core", switch, sources=sources))
 
 
 def failing(core: Path, number: int, tests: tuple[str, ...]) -> bool:

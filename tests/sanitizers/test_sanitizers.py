@@ -7,12 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-import nanobind
 import pytest
 
 import etendue
 
-ROOT = Path(__file__).resolve().parents[2]
+from .. import builds
+from ..builds import ROOT
+
 HERE = Path(__file__).parent
 # Fast tests that between them reach all of the core; clocks mean nothing in this build.
 FAST = (
@@ -27,23 +28,7 @@ pytestmark = pytest.mark.slow
 
 def build(name: str, sanitizers: str, target: str) -> Path:
     """The folder of a build with these sanitizers; made, or brought up to date."""
-    folder = ROOT / "build" / name
-    configure = [
-        "cmake",
-        "-S",
-        str(ROOT),
-        "-B",
-        str(folder),
-        "-G",
-        "Ninja",
-        f"-DETENDUE_SANITIZE={sanitizers}",
-    ]
-    configure += [f"-DPython_EXECUTABLE={sys.executable}", f"-Dnanobind_DIR={nanobind.cmake_dir()}"]
-    for command in (configure, ["cmake", "--build", str(folder), "--target", target]):
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            pytest.fail(f"{' '.join(command)}:\n{done.stdout[-4000:]}{done.stderr[-4000:]}", pytrace=False)
-    return folder
+    return builds.build(ROOT / "build" / name, target, f"-DETENDUE_SANITIZE={sanitizers}")
 
 
 def library(name: str) -> str:

@@ -1,0 +1,62 @@
+"""What another processor may change: rounding, and nothing else."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from .. import builds
+from .test_invariance import SIZE, cornell
+from .worlds import Estimator
+
+RUNS, SPP = 8, 16
+
+
+def images() -> np.ndarray:
+    """(RUNS, SIZE, SIZE, 3): renders of the box that differ in their seeds."""
+    world, camera = cornell()
+    estimator = Estimator("Pathtracer", {"mis": "power"})
+    return np.array([estimator.render(world, camera, SPP, seed=seed).mean() for seed in range(RUNS)])
+
+
+@pytest.fixture(scope="module")
+def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> np.ndarray:
+    """The same renders by a build for any x86-64, with Embree held to the oldest instructions it knows."""
+    core = builds.core_in(builds.build(builds.ROOT / "build" / "portable", "_core", "-DETENDUE_NATIVE=OFF"))
+    home = tmp_path_factory.mktemp("home")
+    for settings in (".embree3", ".embree4"):
+        (home / settings).write_text("isa=sse2\n")
+    file = home / "images.npy"
+    code = (
+        "import sys, numpy; sys.path.insert(0, sys.argv[3])\n"
+        "from tests.conftest import _use_core; _use_core(sys.argv[1])\n"
+        "from tests.estimators import test_platforms as here; numpy.save(sys.argv[2], here.images())\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(core), str(file), str(builds.ROOT)],
+        env={"HOME": str(home)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout
+    return np.load(file)
+
+
+@pytest.mark.slow
+def test_another_processor_gives_the_same_picture_but_for_rounding(elsewhere: np.ndarray) -> None:
+    here = images()
+    difference = np.abs(here - elsewhere) / (here + 1e-6)
+    # Without rounding's help a path takes the same turns, so most pixels agree to the last digits.
+    assert np.median(difference) < 1e-5
+    assert (difference < 1e-3).mean() > 0.9
+    # What turned elsewhere turned both ways.
+    tiles = (
+        (here - elsewhere)[..., 1].reshape(RUNS, 4, SIZE // 4, 4, SIZE // 4).mean((2, 4)).reshape(RUNS, 16)
+    )
+    p = np.nan_to_num(stats.ttest_1samp(tiles, 0).pvalue, nan=1)
+    assert p.min() > 1e-3 / len(p)
