@@ -1,0 +1,122 @@
+"""A scene as plain arrays, which every renderer of the benchmark builds its own scene from.
+
+It needs numpy alone, as the peers run in an interpreter of their own.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Colour = tuple[float, float, float]
+
+
+@dataclass
+class Material:
+    """`kind` is one of Étendue's BSDFs; the rest is what docs/scene-format.md says. Textures are indices, or -1."""
+
+    kind: str
+    albedo: Colour
+    ior: float = 1.5
+    roughness: float = 0.1
+    absorb: float = 0.0
+    radiance: float = 0.0
+    albedo_texture: int = -1
+    emission_texture: int = -1
+
+
+@dataclass
+class Mesh:
+    """Triangles (m, 3) over vertices (n, 3); normals (n, 3) and uvs (n, 2) or None, v = 0 at the bottom."""
+
+    vertices: NDArray[np.float32]
+    triangles: NDArray[np.uint32]
+    normals: NDArray[np.float32] | None
+    uvs: NDArray[np.float32] | None
+    material: int
+
+
+@dataclass
+class View:
+    """A camera, angles in degrees; `focal_depth` along dir."""
+
+    pos: Colour
+    dir: Colour
+    up: Colour
+    fov: float
+    lens_radius: float = 0.0
+    focal_depth: float = 1.0
+
+
+@dataclass
+class World:
+    """A scene. `textures` are (h, w, 3), uint8 in sRGB or float32 linear; `sky` (h, w, 3), linear radiance."""
+
+    name: str
+    meshes: list[Mesh]
+    materials: list[Material]
+    view: View
+    edges: int = 10
+    textures: list[NDArray[Any]] = field(default_factory=list)
+    sky: NDArray[np.float32] | None = None
+
+    #: BSDFs that all of the renderers define alike
+    COMMON = frozenset({"diffuse", "translucent", "glass", "light"})
+
+    @property
+    def triangles(self) -> int:
+        """How many triangles there are."""
+        return sum(len(mesh.triangles) for mesh in self.meshes)
+
+    @property
+    def is_common(self) -> bool:
+        """Whether all renderers define all of its materials alike, so that one reference serves all."""
+        return {material.kind for material in self.materials} <= self.COMMON
+
+    def write(self, path: Path) -> None:
+        """Into one file that `read` reads."""
+        arrays: dict[str, NDArray[Any]] = {f"texture{i}": t for i, t in enumerate(self.textures)}
+        for i, mesh in enumerate(self.meshes):
+            for name in ("vertices", "triangles", "normals", "uvs"):
+                value = getattr(mesh, name)
+                if value is not None:
+                    arrays[f"{name}{i}"] = value
+        if self.sky is not None:
+            arrays["sky"] = self.sky
+        about = {
+            "name": self.name,
+            "edges": self.edges,
+            "view": asdict(self.view),
+            "materials": [asdict(m) for m in self.materials],
+            "mesh_materials": [m.material for m in self.meshes],
+            "textures": len(self.textures),
+        }
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partial = path.with_suffix(".part.npz")
+        np.savez(partial, about=np.array(json.dumps(about)), **arrays)
+        partial.replace(path)
+
+    @staticmethod
+    def read(path: Path) -> World:
+        """What `write` wrote."""
+        with np.load(path) as file:
+            about = json.loads(str(file["about"]))
+            get = lambda name: file[name] if name in file else None  # noqa: E731
+            meshes = [
+                Mesh(file[f"vertices{i}"], file[f"triangles{i}"], get(f"normals{i}"), get(f"uvs{i}"), material)
+                for i, material in enumerate(about["mesh_materials"])
+            ]
+            return World(
+                about["name"],
+                meshes,
+                [Material(**m) for m in about["materials"]],
+                View(**about["view"]),
+                about["edges"],
+                [file[f"texture{i}"] for i in range(about["textures"])],
+                get("sky"),
+            )
