@@ -55,10 +55,9 @@ class Renderer:
         """The distance that a scene file's `auto_focus` focuses on."""
         return float(_core.auto_focus(self.scene, self.camera))
 
-    def render(self, spp: int, seed: int) -> NDArray[np.float32]:
-        """See the package."""
+    def _renderer(self, seed: int) -> Any:
         image_filter = "blackman_harris" if self.options.get("as_users") else "box"
-        renderer = _core.Renderer(
+        return _core.Renderer(
             self.scene,
             self.camera,
             "Pathtracer",
@@ -68,6 +67,14 @@ class Renderer:
             seed=seed,
             threads=self.threads,
         )
+
+    def record(self, spp: int) -> Any:
+        """The rays of the image that `render(spp, 0)` makes."""
+        return _core.RayRecord(self._renderer(0), spp)
+
+    def render(self, spp: int, seed: int) -> NDArray[np.float32]:
+        """See the package."""
+        renderer = self._renderer(seed)
         renderer.render(spp)
         self.rays = renderer.rays
         return renderer.mean()

@@ -596,3 +596,22 @@ class TechniqueFilm:
     @property
     def samples(self) -> int:
         """Taken of every pixel."""
+
+class RayRecord:
+    """
+    The rays that a render traces, to be traced again with nothing around them.
+    """
+
+    def __init__(self, renderer: Renderer, samples: int) -> None:
+        """
+        Of the first `samples` samples of every pixel, as this renderer takes them; 32 bytes a ray.
+        """
+
+    def replay(self, threads: int = 0) -> int:
+        """
+        Traces them all by Embree, tile by tile in their order. Returns how many hit something.
+        """
+
+    @property
+    def rays(self) -> int:
+        """How many there are."""

@@ -73,5 +73,6 @@ void bind_study(nb::module_& m);
 void bind_renderer(nb::module_& m);
 void bind_paths(nb::module_& m);
 void bind_live(nb::module_& m);
+void bind_ray_record(nb::module_& m);
 
 }  // namespace etendue

@@ -13,4 +13,5 @@ NB_MODULE(_core, m) {
     etendue::bind_renderer(m);
     etendue::bind_paths(m);
     etendue::bind_live(m);
+    etendue::bind_ray_record(m);
 }

@@ -98,6 +98,20 @@ struct Scene::Geometry {
         rtcReleaseGeometry(geometry);
     }
 
+    RTCRayHit first_hit(const Ray& ray) const {
+        RTCRayHit query{};
+        query.ray = to_embree(ray);
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+        rtcIntersect1(scene, &query);
+#else
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene, &context, &query);
+#endif
+        return query;
+    }
+
     static bool count_bytes(void* self, ssize_t bytes, bool) {
         static_cast<Geometry*>(self)->bytes += bytes;
         return true;
@@ -140,26 +154,17 @@ const vec3& Scene::lower() const { return geometry_->lower; }
 const vec3& Scene::upper() const { return geometry_->upper; }
 
 SurfaceHit Scene::intersect(const Ray& ray) const {
-    RTCRayHit query{};
-    query.ray = to_embree(ray);
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(geometry_->scene, &query);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(geometry_->scene, &context, &query);
-#endif
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {ray, sky_};
-    const Mesh& mesh = geometry_->meshes[query.hit.geomID];
-    const vec2 barycentrics(query.hit.u, query.hit.v);
+    const RTCRayHit found = geometry_->first_hit(ray);
+    if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {ray, sky_};
+    const Mesh& mesh = geometry_->meshes[found.hit.geomID];
+    const vec2 barycentrics(found.hit.u, found.hit.v);
     return {ray,
-            query.ray.tfar,
+            found.ray.tfar,
             mesh,
-            query.hit.primID,
+            found.hit.primID,
             barycentrics,
             materials_[mesh.material],
-            mesh_lights_[query.hit.geomID]};
+            mesh_lights_[found.hit.geomID]};
 }
 
 bool Scene::occluded(const Ray& ray) const {
@@ -172,6 +177,18 @@ bool Scene::occluded(const Ray& ray) const {
     rtcOccluded1(geometry_->scene, &context, &query);
 #endif
     return query.tfar < 0;
+}
+
+uint64_t Scene::trace(std::span<const TracedRay> rays) const {
+    uint64_t hits = 0;
+    for (const TracedRay& traced : rays) {
+        if (traced.is_shadow_ray) {
+            hits += occluded(traced.ray);
+        } else {
+            hits += geometry_->first_hit(traced.ray).hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        }
+    }
+    return hits;
 }
 
 size_t Scene::triangle_count() const {

@@ -2,11 +2,18 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "gi/light.h"
 #include "gi/light_sampler.h"
 
 namespace etendue {
+
+/// A ray and the question that it asked: what is first, or whether there is anything.
+struct TracedRay {
+    Ray ray;
+    bool is_shadow_ray;
+};
 
 class Scene {
   public:
@@ -31,6 +38,8 @@ class Scene {
     SurfaceHit intersect(const Ray& ray) const;
     /// Whether anything is between two points, or along the ray before t_max.
     bool occluded(const Ray& ray) const;
+    /// Traces all of these and does nothing else, as fast as the library does. Returns how many hit something.
+    uint64_t trace(std::span<const TracedRay> rays) const;
 
     /// A light with probability proportional to its power; empty in a scene without light.
     std::optional<LightSampler::Choice> sample_light_source(float u) const {
