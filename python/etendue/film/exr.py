@@ -47,7 +47,9 @@ def encoded(
         spec.attribute("Software", "Étendue")
         spec.attribute("compression", compression)
         for name, value in attributes.items():
-            spec.attribute(f"{_PREFIX}{name}", value)
+            # Integers of OpenEXR have 32 bits.
+            is_long = isinstance(value, int) and abs(value) >= 2**31
+            spec.attribute(f"{_PREFIX}{name}", str(value) if is_long else value)
         target = oiio.ImageOutput.create("exr")
         if target is None:
             raise OSError(_first_line(oiio.geterror()))
