@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import platform
 import re
 import sys
 from collections.abc import Iterator
 from importlib import metadata
-from pathlib import Path
+
+from .. import machine
 
 # Widest first; what Embree's kernels are compiled for.
 _INSTRUCTION_SETS = (
@@ -47,39 +47,11 @@ def _programs() -> Iterator[tuple[str, str]]:
 
 def _machine() -> Iterator[tuple[str, str]]:
     yield "system", platform.platform()
-    name, flags = _processor()
+    name, flags = machine.processor()
     yield "processor", name
     best = next((label for flag, label in _INSTRUCTION_SETS if flag in flags), "unknown")
     yield "  instruction set", best
-    yield "threads", str(_threads())
-
-
-def _processor() -> tuple[str, set[str]]:
-    try:
-        text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return platform.processor() or platform.machine(), set()
-    fields = dict(re.findall(r"^([^\t:]+?)\s*:\s*(.*)$", text, re.MULTILINE))
-    flags = set((fields.get("flags") or fields.get("Features") or "").split())
-    if platform.machine() in ("aarch64", "arm64"):
-        flags.add("neon")
-    return fields.get("model name", platform.machine()), flags
-
-
-def _threads() -> str:
-    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    cores = os.cpu_count() or available
-    text = str(available) if available == cores else f"{available} of {cores}"
-    quota = _quota()
-    return text if quota is None else f"{text}, limited to {quota:g} by the container"
-
-
-def _quota() -> float | None:
-    try:
-        limit, period = Path("/sys/fs/cgroup/cpu.max").read_text(encoding="ascii").split()
-        return None if limit == "max" else int(limit) / int(period)
-    except (OSError, ValueError):
-        return None
+    yield "threads", machine.threads()
 
 
 def _requirements() -> tuple[list[str], dict[str, list[str]]]:
