@@ -1,6 +1,7 @@
 # Sourced by ./etendue and ./test, with $root set: brings .venv up to date where it is not.
 #
 #   set_up run     what `etendue` needs: system packages, .venv, the package with its compiled core
+#   set_up compare the same, and what reports need
 #   set_up test    the same, and the tools of the tests
 #   set_up slow    the same, and what the slow tests need besides
 #
@@ -50,17 +51,25 @@ build_up() {
     PATH=$venv/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
     [ -z "${CONDA_PREFIX-}" ] || unset CC CXX CFLAGS CXXFLAGS CPPFLAGS LDFLAGS CMAKE_ARGS CMAKE_PREFIX_PATH
 
-    extras=
-    [ "$1" = run ] || extras="[dev]"
-    [ "$1" != slow ] || extras="[dev,judge]"
+    case $1 in
+        run) extras="" levels=run ;;
+        compare) extras="" levels="run compare" ;;
+        test) extras="[dev]" levels="run compare test" ;;
+        slow) extras="[dev,judge,browser]" levels="run compare test slow" packages="$packages $(browser)" ;;
+    esac
     install_packages
     make_venv
     step "building Étendue (minutes the first time)" build ".$extras"
-    levels="run $1"
-    [ "$1" != slow ] || levels="run test slow"
+    # Apart from the build, because what is compiled here brings build tools of its own.
+    [ "$1" = run ] || step "installing what reports need" pip_install "etendue[compare]"
     for level in $levels; do
         echo "$sources $(readlink -f "$venv/bin/python")" >"$venv/.set-up-$level"
     done
+}
+
+# The browser in which reports are tested, where there is a package of it.
+browser() {
+    apt-cache show chromium-headless-shell >/dev/null 2>&1 && echo chromium-headless-shell
 }
 
 install_packages() {

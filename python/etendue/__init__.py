@@ -14,6 +14,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .comparison import Comparison, compare
     from .config import Config, read_config
     from .display import tonemap
     from .errors import EtendueError, Problem, SceneError
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     __version__: str
 
 __all__ = [
+    "Comparison",
     "Config",
     "EtendueError",
     "Film",
@@ -32,6 +34,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "__version__",
+    "compare",
     "load",
     "merge",
     "read_config",
@@ -40,6 +43,8 @@ __all__ = [
 ]
 
 _HOME = {
+    "Comparison": "comparison",
+    "compare": "comparison",
     "Config": "config",
     "read_config": "config",
     "tonemap": "display",
