@@ -397,6 +397,18 @@ class Renderer:
         ValueError for another size.
         """
 
+    def split(self, sums: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 2, 2, 3), order='C', device='cpu', writable=False)] | None = None) -> None:
+        """
+        From now on keeps contributions apart. sums: as another renderer gave them, to go on from, or None for zeros.
+        Raises ValueError for another size.
+        """
+
+    def contributions(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, 2, 2, 3))] | None:
+        """
+        float64 (height, width, 2, 2, 3), or None without `split`: sums of what BSDF sampling and light sampling found,
+        of each over at most two edges and over more, weighted by MIS. Together they are `sum`.
+        """
+
     @property
     def rays(self) -> int:
         """Rays traced, shadow rays included."""
@@ -615,3 +627,51 @@ class RayRecord:
     @property
     def rays(self) -> int:
         """How many there are."""
+
+class AovPass:
+    """What the camera rays of a picture's samples hit first, averaged."""
+
+    def __init__(self, scene: Scene, camera: Camera, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0) -> None:
+        """As of the Renderer whose samples are meant."""
+
+    def render(self, first: int, samples: int, progress: object | None = None) -> bool:
+        """
+        Adds the samples of the indices [first, first + samples). progress(fraction) is called about 20 times a second;
+        an exception in it, or from a signal, ends the pass within 100 ms and is raised.
+        """
+
+    def albedo(self) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3))]:
+        """
+        float32 (height, width, 3), 0..1: of what is seen first; 0 where nothing is.
+        """
+
+    def normal(self) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3))]:
+        """
+        float32 (height, width, 3): mean shading normal in the world, on the viewer's side.
+        """
+
+    def position(self) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3))]:
+        """
+        float32 (height, width, 3): mean over the rays that hit; 0 where none does.
+        """
+
+    def depth(self) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
+        """
+        float32 (height, width): mean distance along the view over the rays that hit; infinite where none does.
+        """
+
+    def object_id(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, None))]:
+        """int32 (height, width): index of the mesh that most rays hit; -1: none."""
+
+    def material_id(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None, None))]:
+        """
+        int32 (height, width): index of the material that most rays hit; -1: none.
+        """
+
+    def denoising_albedo(self) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3))]:
+        """
+        float32 (height, width, 3), 0..1: behind mirrors and glass, with what shines.
+        """
+
+    def denoising_normal(self) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None, 3))]:
+        """float32 (height, width, 3): behind mirrors and glass."""

@@ -74,5 +74,6 @@ void bind_renderer(nb::module_& m);
 void bind_paths(nb::module_& m);
 void bind_live(nb::module_& m);
 void bind_ray_record(nb::module_& m);
+void bind_aovs(nb::module_& m);
 
 }  // namespace etendue

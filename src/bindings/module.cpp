@@ -14,4 +14,5 @@ NB_MODULE(_core, m) {
     etendue::bind_paths(m);
     etendue::bind_live(m);
     etendue::bind_ray_record(m);
+    etendue::bind_aovs(m);
 }

@@ -103,6 +103,29 @@ void resume(Renderer& renderer, const Sums& sum, const Sums& sum_squares, const 
     renderer.resume(std::move(film));
 }
 
+// Doubles in the order of memory: technique, part, colour.
+constexpr size_t SPLIT = sizeof(ContributionSums) / sizeof(double);
+static_assert(SPLIT == TECHNIQUES.size() * ContributionSums::PARTS * 3);
+using Split = nb::shape<-1, -1, TECHNIQUES.size(), ContributionSums::PARTS, 3>;
+
+void split(Renderer& renderer, std::optional<In<double, Split>> sums) {
+    std::vector<ContributionSums> pixels(renderer.film().pixels().size());
+    if (sums) {
+        require_same_length(sums->size(), pixels.size() * SPLIT, "the film and the contributions");
+        std::copy_n(sums->data(), sums->size(), reinterpret_cast<double*>(pixels.data()));
+    }
+    renderer.split(std::move(pixels));
+}
+
+std::optional<Out<double, Split>> contributions(const Renderer& renderer) {
+    if (renderer.contributions().empty()) return std::nullopt;
+    const Film& film = renderer.film();
+    auto out = new_array<Out<double, Split>>(
+        {film.height(), film.width(), TECHNIQUES.size(), ContributionSums::PARTS, 3});
+    std::copy_n(reinterpret_cast<const double*>(renderer.contributions().data()), out.size(), out.data());
+    return out;
+}
+
 }  // namespace
 
 void bind_renderer(nb::module_& m) {
@@ -151,6 +174,16 @@ void bind_renderer(nb::module_& m) {
              "Goes on from these, as another renderer of the same scene, settings and first sample gave "
              "them. Raises\n"
              "ValueError for another size.")
+        .def("split", &split, nb::arg("sums") = nb::none(),
+             "From now on keeps contributions apart. sums: as another renderer gave them, to go on from, or "
+             "None "
+             "for zeros.\n"
+             "Raises ValueError for another size.")
+        .def(
+            "contributions", &contributions,
+            "float64 (height, width, 2, 2, 3), or None without `split`: sums of what BSDF sampling and light "
+            "sampling found,\n"
+            "of each over at most two edges and over more, weighted by MIS. Together they are `sum`.")
         .def_prop_ro("rays", &Renderer::rays, "Rays traced, shadow rays included.")
         .def_prop_ro("seconds", &Renderer::seconds, "Time spent in `render`.")
         .def_prop_ro("threads", &Renderer::threads)

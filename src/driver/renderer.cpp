@@ -36,6 +36,13 @@ void Renderer::resume(Film film) {
     film_ = std::move(film);
 }
 
+void Renderer::split(std::vector<ContributionSums> sums) {
+    if (sums.size() != film_.pixels().size()) {
+        throw std::invalid_argument("there must be one sum of contributions a pixel");
+    }
+    contributions_ = std::move(sums);
+}
+
 bool Renderer::render(uint64_t samples, double time_limit) {
     const Clock::time_point start = Clock::now();
     const double seconds_before = seconds_;
@@ -76,23 +83,33 @@ bool Renderer::render_coarse(uint32_t stride) {
 void Renderer::render_tile(uint32_t index, uint32_t stride, uint64_t samples) {
     const Tile tile = tiles_[index];
     const std::lock_guard lock(tile_mutexes_[index]);
-    Context context(scene_, sensor_.make_sampler());
+    ContributionObserver observer;
+    Context context(scene_, sensor_.make_sampler(), contributions_.empty() ? nullptr : &observer);
     uint64_t taken = 0;
     // A tile begins at a multiple of every stride that divides its side.
     for (uint32_t y = tile.y0; y < tile.y1; y += stride) {
-        for (uint32_t x = tile.x0; x < tile.x1; x += stride) taken += render_pixel(context, x, y, samples);
+        for (uint32_t x = tile.x0; x < tile.x1; x += stride) {
+            taken += render_pixel(context, observer, x, y, samples);
+        }
     }
     rays_ += context.rays;
     samples_done_ += taken;
 }
 
-uint64_t Renderer::render_pixel(Context& context, uint32_t x, uint32_t y, uint64_t samples) {
+uint64_t Renderer::render_pixel(Context& context, ContributionObserver& observer, uint32_t x, uint32_t y,
+                                uint64_t samples) {
     Pixel& pixel = film_.at(x, y);
+    const bool is_split = !contributions_.empty();
     const uint64_t before = pixel.count;
     while (pixel.count < samples && !stop_) {
         const uint64_t sample = first_sample_ + pixel.count;
         const Ray ray = sensor_.start(context.sampler, x, y, sample);
-        if (!pixel.add(algorithm_->radiance(context, ray), sample)) report_invalid({x, y, sample});
+        if (is_split) observer.start();
+        if (!pixel.add(algorithm_->radiance(context, ray), sample)) {
+            report_invalid({x, y, sample});
+        } else if (is_split) {
+            observer.add_to(contributions_[size_t{y} * film_.width() + x]);
+        }
     }
     return pixel.count - before;
 }

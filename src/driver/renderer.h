@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "algorithms/algorithm.h"
+#include "driver/contributions.h"
 #include "driver/sensor.h"
 #include "driver/tiles.h"
 #include "gi/film.h"
@@ -64,6 +65,13 @@ class Renderer {
     /// Goes on from another film of the same size, scene, settings and first sample. Throws
     /// std::invalid_argument for another size.
     void resume(Film film);
+
+    /// From now on keeps the contributions of all samples apart, going on from `sums`, one a pixel; of zeros
+    /// where nothing is rendered yet. Throws std::invalid_argument for another number of pixels.
+    void split(std::vector<ContributionSums> sums);
+    /// Empty without `split`.
+    const std::vector<ContributionSums>& contributions() const { return contributions_; }
+
     uint64_t rays() const { return rays_; }
     uint64_t invalid_count() const { return invalid_count_; }
     /// The first of them, at most MAX_INVALID_LISTED.
@@ -76,7 +84,8 @@ class Renderer {
   private:
     void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
     /// Returns how many samples it took.
-    uint64_t render_pixel(Context& context, uint32_t x, uint32_t y, uint64_t samples);
+    uint64_t render_pixel(Context& context, ContributionObserver& observer, uint32_t x, uint32_t y,
+                          uint64_t samples);
     void report_invalid(const InvalidSample& sample);
 
     const Scene& scene_;
@@ -87,6 +96,7 @@ class Renderer {
     Film film_;
     Tiles tiles_;
     mutable std::vector<std::mutex> tile_mutexes_;  // held by who renders a tile, or reads it
+    std::vector<ContributionSums> contributions_;
     std::atomic<bool> stop_ = false;
     std::atomic<uint64_t> rays_ = 0, samples_done_ = 0, invalid_count_ = 0;
     std::atomic<double> seconds_ = 0;

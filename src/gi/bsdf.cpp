@@ -41,6 +41,10 @@ using Bsdfs = List<ETENDUE_BSDFS>;
 
 }  // namespace
 
+vec3 bsdf_albedo(BsdfKind kind, const Surface& surface) {
+    return Bsdfs::dispatch<vec3>(kind, [&](auto bsdf) { return decltype(bsdf)::albedo(surface); });
+}
+
 vec3 bsdf_f(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi) {
     return Bsdfs::dispatch<vec3>(kind, [&](auto bsdf) { return decltype(bsdf)::f(surface, wo, wi); });
 }

@@ -82,6 +82,9 @@ struct Bsdf {
     static constexpr bool is_delta = false;       // all of its lobes are
     static constexpr bool is_reciprocal = false;  // f(wo, wi) == f(wi, wo)
 
+    /// What of the light that arrives leaves again, about, and from nowhere in particular: for pictures of
+    /// materials and for denoising, never for transport.
+    static vec3 albedo(const Surface& surface) { return surface.albedo; }
     static vec3 f(const Surface&, const vec3& /*wo*/, const vec3& /*wi*/) { return vec3(0); }
     static float pdf(const Surface&, const vec3& /*wo*/, const vec3& /*wi*/) { return 0; }
     /// `lobe` and `u` are uniform in [0, 1). Empty: nothing goes on from here.
@@ -92,6 +95,7 @@ struct Bsdf {
 };
 
 // The same for a BSDF chosen at run time.
+vec3 bsdf_albedo(BsdfKind kind, const Surface& surface);
 vec3 bsdf_f(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi);
 float bsdf_pdf(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi);
 std::optional<BsdfSample> bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, float lobe,

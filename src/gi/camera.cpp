@@ -52,6 +52,11 @@ Ray Camera::ray(const vec2& film, const vec2& u_lens) const {
     return {settings_.pos + offset, glm::normalize(to_focus - offset)};
 }
 
+float Camera::depth(const vec3& point) const {
+    const vec3 away = point - settings_.pos;
+    return settings_.perspective ? glm::dot(away, forward_) : glm::length(away);
+}
+
 float auto_focus(const Scene& scene, const Camera& camera) {
     const uint32_t w = camera.width(), h = camera.height();
     double log_sum = 0;

@@ -32,6 +32,8 @@ class Camera {
     /// Where that pinhole sees a point: the inverse of the above. Empty behind a perspective camera; may be
     /// outside of the film.
     std::optional<vec2> film_of(const vec3& point) const;
+    /// How far away a point is: along dir, as focal_depth counts; of a panorama, straight from pos.
+    float depth(const vec3& point) const;
 
     const CameraSettings& settings() const { return settings_; }
     uint32_t width() const { return width_; }

@@ -11,6 +11,8 @@ template <class Derived>
 struct GgxReflection : Bsdf {
     static constexpr bool is_reciprocal = true;
 
+    static vec3 albedo(const Surface& surface) { return surface.tint() * Derived::fresnel(surface, 1); }
+
     static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi) {
         if (wi.z <= 0) return vec3(0);
         const float fresnel = Derived::fresnel(surface, glm::dot(wo, Ggx::half(wo, wi)));

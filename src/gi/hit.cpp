@@ -35,6 +35,7 @@ SurfaceHit::SurfaceHit(const Ray& ray, float distance, const Mesh& mesh, uint32_
       distance(distance),
       point(mesh.point(triangle, b)),
       uv(mesh.uv(triangle, b)),
+      mesh(&mesh),
       material(&material),
       light(light) {
     front = glm::dot(point.normal, wo) > 0;

@@ -23,6 +23,7 @@ struct SurfaceHit {
     vec2 uv{0};
     Frame frame;  // around the shading normal, on the side of wo
     Surface surface;
+    const Mesh* mesh = nullptr;
     const Material* material = nullptr;
     const Light* light = nullptr;
 
@@ -40,6 +41,9 @@ struct SurfaceHit {
     bool is_type(BrdfType type) const { return type == BRDF_SPECULAR && bsdf_is_delta(material->bsdf); }
     /// Radiance emitted towards wo.
     vec3 Le() const;
+
+    /// The BSDF's, see there.
+    vec3 albedo() const { return bsdf_albedo(material->bsdf, surface); }
 
     // The BSDF in world directions.  A direction that is above the surface for one of the shading and the
     // geometric normal, and below for the other, carries no light: f, pdf and sample agree on that.

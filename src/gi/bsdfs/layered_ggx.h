@@ -24,6 +24,11 @@ struct LayeredGgx : Bsdf {
          .ior = 1.3f},
     };
 
+    static vec3 albedo(const Surface& surface) {
+        const float coat = fresnel_dielectric(1, surface.ior);
+        return coat * surface.tint() + (1 - coat) * surface.albedo;
+    }
+
     static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi) {
         if (wi.z <= 0) return vec3(0);
         const float coat = fresnel_dielectric(wo.z, surface.ior);

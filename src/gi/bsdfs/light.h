@@ -16,6 +16,8 @@ struct LightBsdf : Bsdf {
          .match = {"emissive", "light"},
          .emissive_strength = 10},
     };
+
+    static vec3 albedo(const Surface&) { return vec3(0); }
 };
 
 }  // namespace etendue

@@ -15,6 +15,8 @@ struct Phong : Bsdf {
         {.name = "phong", .summary = summary, .order = 50, .match = {"phong"}},
     };
 
+    static vec3 albedo(const Surface& surface) { return surface.tint(); }
+
     static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi) {
         if (wi.z <= 0) return vec3(0);
         const float n = exponent(surface);

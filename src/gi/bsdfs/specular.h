@@ -14,6 +14,8 @@ struct Specular : Bsdf {
         {.name = "specular", .summary = summary, .order = 40, .match = {"specular"}, .ior = 1.52f},
     };
 
+    static vec3 albedo(const Surface& surface) { return surface.albedo * fresnel_dielectric(1, surface.ior); }
+
     static std::optional<BsdfSample> sample(const Surface& surface, const vec3& wo, float, const vec2&) {
         return BsdfSample{vec3(-wo.x, -wo.y, wo.z), surface.albedo * fresnel_dielectric(wo.z, surface.ior), 1,
                           BRDF_SPECULAR};
