@@ -27,9 +27,11 @@ def of_machine() -> int | None:
         return None
 
 
-def require(config: Config) -> None:
-    """Raises EtendueError where the image needs more memory than there is."""
-    needed, there = of_image(config.framebuffer), of_machine()
+def require(config: Config, beside: int = 0) -> None:
+    """Raises EtendueError where the image, and `beside` bytes a pixel, need more memory than there is."""
+    framebuffer = config.framebuffer
+    needed = of_image(framebuffer) + framebuffer.res_w * framebuffer.res_h * beside
+    there = of_machine()
     if there is not None and needed > there:
         size = f"{config.framebuffer.res_w} x {config.framebuffer.res_h}"
         raise EtendueError(

@@ -15,7 +15,7 @@ from ..config.overrides import Override
 from ..errors import EtendueError
 from ..film import file as film_file
 from ..film import resuming
-from . import memory, progress
+from . import beside, memory, progress
 from .interrupts import Interrupts
 from .words import clock, counted, si
 
@@ -42,6 +42,8 @@ class Job:
     resume: Path | None = None
     spp: int | None = None
     samples: Range | None = None
+    aovs: Sequence[str] = ()
+    denoise: bool = False
 
     def say(self, text: str) -> None:
         """A line for people; the standard output is left to --json."""
@@ -89,11 +91,12 @@ def run(job: Job) -> int:
 def _run(job: Job, interrupts: Interrupts) -> int:
     start = None if job.resume is None else film_file.read(job.resume)
     name = job.config.stem if job.config is not None else resuming.scene_name(start)
-    paths = outputs.check(job.outputs or [f"{name}.png"])
+    paths = outputs.check(job.outputs or [f"{name}.exr" if job.aovs else f"{name}.png"])
+    wanted = beside.wanted(job.aovs, paths, job.denoise)
     if job.film_path is not None:
-        resuming.check_place(job.film_path, job.resume, paths)
+        resuming.check_place(job.film_path, job.resume, [*paths, *wanted.denoised])
     config, data_dirs = _config(job, start)
-    memory.require(config)
+    memory.require(config, wanted.bytes_per_pixel)
     from .. import scene as scenes
 
     for name in config.scenes_to_build(data_dirs):
@@ -105,15 +108,21 @@ def _run(job: Job, interrupts: Interrupts) -> int:
         resuming.require_same_scene(scene, start, job.resume)
     spp = _spp_wanted(job, config, start)
     job.say(_introduction(scene, spp, start))
-    film = _render(job, scene, start, spp, interrupts)
+    film = _render(job, scene, start, spp, wanted.kept_apart, interrupts)
     if film is None:
         job.say("interrupted before the first samples; nothing was written")
         return interrupts.exit_code
+    film, denoised, left_out = beside.made(scene, film, wanted, job.threads, job.say, job.quiet)
     with interrupts.shielded():
-        _save(film, paths, job.film_path)
-    interrupted = (film.interrupted or interrupts.by_signal) and not film.complete
+        _save(film, paths, job.film_path, denoised, wanted.denoised)
+    stopped = film.interrupted or interrupts.by_signal
+    interrupted = left_out is not None or (stopped and not film.complete)
     for line in _closing(film, paths, job, interrupted):
         job.say(line)
+    if left_out is not None:
+        job.say(f"interrupted before {left_out}")
+    if denoised is not None:
+        job.say(f"{denoised.attributes['denoised']} (biased): {', '.join(map(str, wanted.denoised))}")
     if job.as_json:
         print(json.dumps(_summary(film, scene, paths)))
     return interrupts.exit_code if interrupted else 0
@@ -142,7 +151,9 @@ def _spp_wanted(job: Job, config: Config, start: Film | None) -> int:
     return config.framebuffer.sppx
 
 
-def _render(job: Job, scene: Scene, start: Film | None, spp: int, interrupts: Interrupts) -> Film | None:
+def _render(
+    job: Job, scene: Scene, start: Film | None, spp: int, aovs: Sequence[str], interrupts: Interrupts
+) -> Film | None:
     """The film; None where Ctrl-C came before its first samples."""
     framebuffer = scene.config.framebuffer
     before = 0.0 if start is None else start.spp
@@ -168,19 +179,29 @@ def _render(job: Job, scene: Scene, start: Film | None, spp: int, interrupts: In
                 progress=report,
                 checkpoint=None if job.film_path is None else checkpoint,
                 checkpoint_seconds=job.checkpoint,
+                aovs=aovs,
             )
         except KeyboardInterrupt:
             return None
 
 
-def _save(film: Film, paths: Sequence[Path], film_path: Path | None) -> None:
+def _save(
+    film: Film,
+    paths: Sequence[Path],
+    film_path: Path | None,
+    denoised: Film | None,
+    denoised_paths: Sequence[Path],
+) -> None:
     """Writes all that can be written, the film first, before it tells what cannot."""
     problems: list[str] = []
     if film_path is not None and (problem := resuming.saved(film, film_path)) is not None:
         problems.append(problem)
-    for path in paths:
+    images = [(path, film) for path in paths]
+    if denoised is not None:
+        images += [(path, denoised) for path in denoised_paths]
+    for path, image in images:
         try:
-            film.save(path)
+            image.save(path)
         except EtendueError as error:
             problems.append(str(error))
     if problems:
@@ -213,7 +234,14 @@ def _closing(film: Film, paths: Sequence[Path], job: Job, interrupted: bool) -> 
     written = [*paths, *([job.film_path] if job.film_path is not None else [])]
     yield f"{_spp(film)} spp in {clock(film.seconds)}{rate}: {', '.join(map(str, written))}"
     if not film.complete and job.film_path is not None:
-        yield f"to go on: {resuming.command(job.film_path, job.outputs, job.threads, job.checkpoint)}"
+        yield f"to go on: {_command(job)}"
+
+
+def _command(job: Job) -> str:
+    assert job.film_path is not None
+    command = resuming.command(job.film_path, job.outputs, job.threads, job.checkpoint)
+    layers = f" --aov {','.join(job.aovs)}" if job.aovs else ""
+    return f"{command}{layers}{' --denoise' if job.denoise else ''}"
 
 
 def _summary(film: Film, scene: Scene, paths: Sequence[Path]) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -60,6 +60,10 @@ class Film:
     ranges: the [first, end) of sample indices that every pixel has. partial: a range behind one of them that
     only some pixels have, each from its beginning on. goal: the range that the render was to fill.
     origin: the scene and the settings; None for a film that no render gave.
+    contributions: float64 (height, width, 2, 2, 3), the sums of what BSDF sampling and light sampling found over
+    at most two edges and over more, which add up to `sum`; None where they were not kept apart.
+    aovs: what else is known of each pixel, by the names of `aovs.AOVS`; layers of the EXR that `save` writes, and
+    in no film file.
     """
 
     image: NDArray[np.float32]
@@ -80,6 +84,8 @@ class Film:
     partial: Range | None = None
     goal: Range = (0, 0)
     origin: Origin | None = None
+    contributions: NDArray[np.float64] | None = None
+    aovs: dict[str, NDArray[Any]] = field(default_factory=dict)
 
     @classmethod
     def empty(cls, width: int, height: int, **how: Any) -> Film:
@@ -152,9 +158,9 @@ class Film:
     ) -> None:
         """Write the image: .exr (float32) and .hdr linear, .png and .jpg exposed, through `view`, in sRGB.
 
-        EXR files carry `self.attributes` and the given ones. A file that is there before is replaced once the
-        new one is whole. Raises EtendueError for an unknown extension and for whatever keeps the file from
-        being written.
+        EXR files carry `self.aovs` as further layers, `self.attributes` and the given ones. A file that is there
+        before is replaced once the new one is whole. Raises EtendueError for an unknown extension and for
+        whatever keeps the file from being written.
         """
         file = Path(path)
         suffix = file.suffix.lower()
@@ -164,15 +170,30 @@ class Film:
             allowed = ", ".join((*_LINEAR, *_DISPLAY))
             raise EtendueError(f'{file}: unknown kind of image "{file.suffix}" ({hint}allowed: {allowed})')
         pixels = self.image if suffix in _LINEAR else self.tonemapped(exposure, view)
-        notes = {**self.attributes, **(attributes or {})} if suffix == ".exr" else {}
-        save_pixels(file, pixels, notes)
+        notes = {**self.attributes, **(attributes or {})}
+        if suffix != ".exr":
+            # Of an image that is only to be looked at, whether it is to be trusted.
+            notes = {key: notes[key] for key in ("denoised", "biased") if key in notes}
+        channels: list[str] = []
+        if suffix == ".exr" and self.aovs:
+            from . import aovs
+
+            channels, values = aovs.layers(self.aovs)
+            pixels = np.concatenate([self.image, *values], axis=2)
+        save_pixels(file, pixels, notes, channels)
 
 
 def save_pixels(
-    file: Path, pixels: NDArray[np.float32] | NDArray[np.uint8], attributes: Mapping[str, Attribute]
+    file: Path,
+    pixels: NDArray[np.float32] | NDArray[np.uint8],
+    attributes: Mapping[str, Attribute],
+    more_channels: Sequence[str] = (),
 ) -> None:
-    """Write (height, width, 3) pixels, float32 as linear and uint8 as sRGB; raises EtendueError."""
-    data = encoded(file, pixels, attributes)
+    """Write (height, width, 3) pixels, float32 as linear and uint8 as sRGB; raises EtendueError.
+
+    more_channels: of EXR files, the names of those behind R, G and B.
+    """
+    data = encoded(file, pixels, attributes, more_channels)
     outputs.write(file, lambda temporary: _store(temporary, data))
 
 
@@ -180,7 +201,9 @@ def _store(path: Path, data: bytes) -> None:
     path.write_bytes(data)
 
 
-def encoded(path: Path, pixels: NDArray[Any], attributes: Mapping[str, Attribute]) -> bytes:
+def encoded(
+    path: Path, pixels: NDArray[Any], attributes: Mapping[str, Attribute], more_channels: Sequence[str] = ()
+) -> bytes:
     """The content of the image file `path`.
 
     Encoded in memory, because on a full disk the libraries behind OpenImageIO leave half a PNG file without a
@@ -191,16 +214,22 @@ def encoded(path: Path, pixels: NDArray[Any], attributes: Mapping[str, Attribute
         if not hasattr(os, "memfd_create"):
             with tempfile.TemporaryDirectory() as folder:
                 place = Path(folder, f"image{name}")
-                _encode(place, name, pixels, attributes)
+                _encode(place, name, pixels, attributes, more_channels)
                 return place.read_bytes()
         with open(os.memfd_create("image"), "rb") as memory:
-            _encode(Path(f"/proc/self/fd/{memory.fileno()}"), name, pixels, attributes)
+            _encode(Path(f"/proc/self/fd/{memory.fileno()}"), name, pixels, attributes, more_channels)
             return memory.read()
     except OSError as error:
         raise EtendueError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
-def _encode(path: Path, suffix: str, pixels: NDArray[Any], attributes: Mapping[str, Attribute]) -> None:
+def _encode(
+    path: Path,
+    suffix: str,
+    pixels: NDArray[Any],
+    attributes: Mapping[str, Attribute],
+    more_channels: Sequence[str],
+) -> None:
     import OpenImageIO as oiio
 
     height, width, channels = pixels.shape
@@ -208,11 +237,15 @@ def _encode(path: Path, suffix: str, pixels: NDArray[Any], attributes: Mapping[s
     spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT if is_linear else oiio.UINT8)
     spec.attribute("oiio:ColorSpace", "lin_rec709_scene" if is_linear else "srgb_rec709_scene")
     spec.attribute("Software", "Étendue")
+    if more_channels:
+        spec.channelnames = ("R", "G", "B", *more_channels)
     if suffix == ".exr":
         spec.attribute("compression", "zip")
     if suffix in (".jpg", ".jpeg"):
         spec.attribute("Compression", f"jpeg:{_JPEG_QUALITY}")
         spec.attribute("jpeg:subsampling", "4:4:4")
+    if "denoised" in attributes:
+        spec.attribute("ImageDescription", f"denoised by {attributes['denoised']}: biased")
     for name, value in attributes.items():
         # Integers of OpenEXR have 32 bits.
         is_long = isinstance(value, int) and abs(value) >= 2**31

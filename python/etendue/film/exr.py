@@ -64,11 +64,11 @@ def encoded(
 
 def decoded(
     path: Path,
-    channels: Sequence[str],
+    channels_of: Callable[[dict[str, Any]], Sequence[str]],
     integers: Collection[str],
     refuse_others: Callable[[Path, dict[str, Any]], None],
 ) -> tuple[dict[str, Any], NDArray[np.uint32]]:
-    """The attributes and words of an EXR file that `encoded` made.
+    """The attributes and words of an EXR file that `encoded` made; which channels it has follows from the former.
 
     `refuse_others` sees the attributes first and refuses what is something else. EtendueError for whatever
     keeps the file from being read.
@@ -77,7 +77,7 @@ def decoded(
 
     source, notes = _opened(path, refuse_others)
     try:
-        spec = source.spec()
+        spec, channels = source.spec(), channels_of(notes)
         names = list(spec.channelnames)
         if sorted(names) != sorted(channels):
             raise EtendueError(f"{path}: the film is damaged (its channels are not those of a film)")

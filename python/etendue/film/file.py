@@ -36,7 +36,15 @@ _WORDS = (
     *(f"{name}.{half}.{colour}" for name in _SUMS for colour in _COLOURS for half in ("low", "high")),
     *(f"{name}.{half}" for name in _COUNTS for half in ("low", "high")),
 )
-_CHANNELS = (*_COLOURS, *_WORDS)
+# Likewise, of films whose contributions were kept apart.
+_MORE_WORDS = tuple(
+    f"{technique}.{part}.{half}.{colour}"
+    for technique in ("bsdf_sampling", "light_sampling")
+    for part in ("direct", "indirect")
+    for colour in _COLOURS
+    for half in ("low", "high")
+)
+_INTEGERS = {*_WORDS, *_MORE_WORDS}
 
 
 def write(film: Film, path: Path, compressed: bool = True) -> None:
@@ -48,7 +56,9 @@ def write(film: Film, path: Path, compressed: bool = True) -> None:
     data = np.concatenate([_words(film.image), *map(_words, _arrays(film))], axis=2)
     notes = {**film.attributes, **_header(film, film.origin), "checksum": f"{zlib.crc32(data.data):08x}"}
     try:
-        with exr.encoded(data, _CHANNELS, set(_WORDS), notes, "zip:1" if compressed else "none") as encoded:
+        with exr.encoded(
+            data, _channels(notes), _INTEGERS, notes, "zip:1" if compressed else "none"
+        ) as encoded:
             film_replacing.replace(path, encoded)
     except OSError as error:
         raise EtendueError(f"{path}: cannot be written: {error.strerror or error}") from error
@@ -60,7 +70,7 @@ def read(path: str | PathLike[str]) -> Film:
     Raises EtendueError for a file that is none, or is damaged.
     """
     file = Path(path)
-    notes, data = exr.decoded(file, _CHANNELS, set(_WORDS), refuse_others=_refuse_strangers)
+    notes, data = exr.decoded(file, _channels, _INTEGERS, refuse_others=_refuse_strangers)
     if f"{zlib.crc32(data.data):08x}" != notes.get("checksum"):
         raise EtendueError(f"{file}: the film is damaged (its checksum does not fit)")
     film = _film(file, notes)
@@ -72,6 +82,9 @@ def read(path: str | PathLike[str]) -> Film:
     for name in _COUNTS:
         setattr(film, name, np.ascontiguousarray(data[..., position : position + 2]).view(np.uint64)[..., 0])
         position += 2
+    if notes.get("contributions"):
+        more = np.ascontiguousarray(data[..., position:]).view(np.float64)
+        film.contributions = more.reshape(*more.shape[:2], 2, 2, 3)
     film.attributes = attributes_of(film)
     return film
 
@@ -82,8 +95,15 @@ def read_header(path: str | PathLike[str]) -> Film:
     return _film(file, exr.attributes(file, refuse_others=_refuse_strangers))
 
 
+def _channels(notes: dict[str, Any]) -> tuple[str, ...]:
+    return (*_COLOURS, *_WORDS, *(_MORE_WORDS if notes.get("contributions") else ()))
+
+
 def _arrays(film: Film) -> list[NDArray[Any]]:
-    return [*(getattr(film, name) for name in _SUMS), *(getattr(film, name)[..., None] for name in _COUNTS)]
+    arrays = [*(getattr(film, name) for name in _SUMS), *(getattr(film, name)[..., None] for name in _COUNTS)]
+    if film.contributions is not None:
+        arrays.append(film.contributions.reshape(*film.contributions.shape[:2], -1))
+    return arrays
 
 
 def _words(array: NDArray[Any]) -> NDArray[np.uint32]:
@@ -104,6 +124,7 @@ def _header(film: Film, origin: Origin) -> dict[str, Any]:
     """Texts but for the format: integers of OpenEXR have 32 bits, those of JSON as many as it takes."""
     return {
         "film": FORMAT,
+        "contributions": int(film.contributions is not None),
         "ranges": json.dumps(film.ranges),
         "partial": json.dumps(film.partial),
         "goal": json.dumps(film.goal),

@@ -93,12 +93,19 @@ def _sum(films: Iterator[Film]) -> Film:
     total = dataclasses.replace(
         first,
         **{name: getattr(first, name).copy() for name in _ARRAYS},
+        contributions=None if first.contributions is None else first.contributions.copy(),
+        aovs={},
         invalid=list(first.invalid),
         ranges=list(first.ranges),
     )
     for film in films:
         for name in _ARRAYS:
             getattr(total, name)[...] += getattr(film, name)
+        # Without those of all the samples, there is no sum.
+        if total.contributions is not None and film.contributions is not None:
+            total.contributions += film.contributions
+        else:
+            total.contributions = None
         total.invalid = [*total.invalid, *film.invalid][:MOST_INVALID_LISTED]
         total.invalid_count += film.invalid_count
         total.rays += film.rays

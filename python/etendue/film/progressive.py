@@ -79,6 +79,8 @@ def _render(
     # The renderer goes on from the sums of all samples, and counts those of this range alone.
     counts: NDArray[np.uint64] = film.sample_count - np.uint64(before)
     renderer.resume(film.sum, film.sum_squares, film.half_sum, counts, film.invalid_per_pixel)
+    if film.contributions is not None:
+        renderer.split(film.contributions)
 
     def report(_: float, spp: float) -> None:
         if steps.progress is not None:
@@ -113,6 +115,7 @@ def grown(film: Film, piece: Range, renderer: Renderer) -> Film:
         sum_squares=sum_squares,
         half_sum=half_sum,
         invalid_per_pixel=invalid,
+        contributions=renderer.contributions(),
         rays=film.rays + renderer.rays,
         seconds=film.seconds + renderer.seconds,
         invalid=[*film.invalid, *renderer.invalid][:MOST_INVALID_LISTED],

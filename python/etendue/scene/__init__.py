@@ -15,9 +15,11 @@ from ..config.overrides import Override
 from ..config.sections import Vec3
 from ..errors import EtendueError, Problem, SceneError
 from ..film import Film, sample_ranges
+from ..film import aovs as film_aovs
 from ..film.origin import Origin
 from ..film.progressive import Progress, Steps, go_on
 from ..film.sample_ranges import Range
+from . import beside
 
 if TYPE_CHECKING:
     from .. import _core
@@ -69,6 +71,7 @@ class Scene:
         resume: Film | None = None,
         checkpoint: Callable[[Film], object] | None = None,
         checkpoint_seconds: float = 30.0,
+        aovs: Sequence[str] = (),
         **parameters: Any,
     ) -> Film:
         """Render the scene.
@@ -84,11 +87,14 @@ class Scene:
         different ones can be merged. resume: a film of this scene and these settings to go on from, which
         itself stays as it is; without spp, to where it was to go.
         checkpoint(film): called every checkpoint_seconds with the film so far.
+        aovs: names of `etendue.film.aovs.AOVS`, to be found in `film.aovs` afterwards.
 
         Ctrl-C returns the film with what is done and `film.interrupted` set, and raises KeyboardInterrupt
-        only where nothing is done yet. Raises SceneError for a value that is not allowed, EtendueError for
-        a film to resume that is of something else, with all that differs.
+        only where nothing is done yet; a film that it ended has no AOVs of surfaces. Raises SceneError for a
+        value that is not allowed, EtendueError for a name in `aovs` that is none, and for a film to resume that
+        is of something else, with all that differs.
         """
+        aovs = film_aovs.checked(aovs)
         goal = self._goal(spp, samples, resume)
         wanted = goal[1] - goal[0] if goal else None
         if wanted is not None and resume is not None:
@@ -109,6 +115,8 @@ class Scene:
             refusal = "the film is of another scene or other settings"
             origin.require_same(resume.origin, refusal, "here", "in the film")
             start = resume
+        if film_aovs.from_source(aovs, "contributions"):
+            start = beside.split(start, config.algorithm)
         start = dataclasses.replace(
             start, goal=goal or (0, framebuffer.sppx), origin=origin, exposure=framebuffer.exposure
         )
@@ -116,7 +124,9 @@ class Scene:
         film = go_on(start, lambda first: self._renderer(config, threads, first), steps)
         if film.interrupted and film.samples == 0:
             raise KeyboardInterrupt
-        return film
+        if film.interrupted:
+            aovs = tuple(name for name in aovs if film_aovs.AOVS[name].source != "surfaces")
+        return self.with_aovs(film, aovs, threads) if aovs else film
 
     def replay(
         self,
@@ -177,6 +187,64 @@ class Scene:
         if config.camera.lens_radius > 0:  # a pinhole has no focus
             focal_depth = _focal_depth(config, core)
         return dataclasses.replace(self, config=config, core=core, focal_depth=focal_depth)
+
+    def with_aovs(
+        self,
+        film: Film,
+        names: Sequence[str],
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+    ) -> Film:
+        """A film of this scene with what else is known of its pixels in `aovs`; names: of `film.aovs.AOVS`.
+
+        Arrays are float32 (height, width, channels), or (height, width) of a single channel, int32 for ids; row 0 is
+        at the top. What camera rays hit is found anew, with the film's own rays of its first 64 samples;
+        progress(fraction) is called meanwhile, about 20 times a second. Raises EtendueError for a name that is
+        none, a film of another scene, and contributions that were not kept apart.
+        """
+        found = beside.aovs_of(self, film, film_aovs.checked(names), threads, progress)
+        return dataclasses.replace(
+            film, aovs=found, attributes={**film.attributes, **beside.attributes(self, film, found)}
+        )
+
+    def denoise(
+        self,
+        film: Film,
+        threads: int = 0,
+        progress: Callable[[float], object] | None = None,
+        warnings: list[str] | None = None,
+    ) -> Film:
+        """A film of this scene with its image denoised by Open Image Denoise, guided by albedo and normal.
+
+        The result is biased, and says so in its attributes. It has no origin, so that it can be neither written
+        as a film file nor gone on from; its sums are those of the noisy film, which itself stays as it is.
+        progress(fraction): called a few times a second. warnings: is told of pixels that were left out, for want
+        of a finite radiance. Raises EtendueError where the extra "denoise" is not installed, or the film is of
+        another scene.
+        """
+        from .. import denoise
+
+        denoise.require()
+        guides = beside.guides(
+            self, film, threads, None if progress is None else lambda part: progress(part / 2)
+        )
+        report = None if progress is None else lambda part: progress((1 + part) / 2)
+        denoised, said = denoise.denoise_film(film, *guides, threads, report)
+        if said is not None and warnings is not None:
+            warnings.append(said)
+        return denoised
+
+    def config_of(self, film: Film) -> Config:
+        """The config that gave a film of this scene; EtendueError for a film of another one."""
+        if film.origin is None:
+            raise EtendueError("a film that does not come from a render says nothing of its scene")
+        settings = film.origin.settings
+        size = settings["framebuffer.res_w"], settings["framebuffer.res_h"]
+        given = {key: value for key, value in settings.items() if "." not in key}
+        config = self._changed(None, size, given.pop("algorithm"), given.pop("seed"), given)
+        origin = Origin.of(config, self.contents, self.data_dirs)
+        origin.require_same(film.origin, "the film is of another scene", "here", "in the film")
+        return config
 
     def _goal(self, spp: int | None, samples: Sequence[int] | None, resume: Film | None) -> Range | None:
         """The range of samples to reach; None: what the scene file says."""

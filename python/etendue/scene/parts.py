@@ -113,7 +113,8 @@ class Parts:
                     )
                 )
                 material = file.materials[mesh.material]
-                self.surfaces.of_meshes.append(Surface.of(material, self._textures_of(file, mesh, material)))
+                textures = self._textures_of(file, mesh, material)
+                self.surfaces.of_meshes.append(Surface.of(mesh.name, material, textures))
         self._warn_of_patches({material.name for file in files for material in file.materials})
         self._warn_of_bright()
 

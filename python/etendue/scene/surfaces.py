@@ -21,11 +21,12 @@ from .textures import NONE
 class Surface:
     """The material of one mesh, as its file has it; `textures` are indices: albedo, emission, normal, cutout."""
 
+    mesh: str
     material: Material
     textures: tuple[int, int, int, int] = (NONE, NONE, NONE, NONE)
 
     @classmethod
-    def of(cls, material: Material, textures: tuple[int, int, int, int]) -> Surface:
+    def of(cls, mesh: str, material: Material, textures: tuple[int, int, int, int]) -> Surface:
         """Keeps of each texture its name alone: the pixels are in the compiled core."""
         named = dataclasses.replace(
             material,
@@ -34,7 +35,7 @@ class Surface:
             normal_texture=_name(material.normal_texture),
             cutout_texture=_name(material.cutout_texture),
         )
-        return cls(named, textures)
+        return cls(mesh, named, textures)
 
 
 @dataclass
@@ -46,6 +47,11 @@ class Surfaces:
 
     of_meshes: list[Surface] = field(default_factory=list)
     environment: NDArray[np.float32] | None = None
+
+    @property
+    def material_names(self) -> list[str]:
+        """Each once: a material's id is its index here."""
+        return list(dict.fromkeys(surface.material.name for surface in self.of_meshes))
 
     def resolved(self, section: SceneSection) -> dict[str, Resolved]:
         """The materials under their names, with the patches of `section`."""

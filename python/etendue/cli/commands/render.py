@@ -18,6 +18,12 @@ def algorithm_names() -> list[str]:
     return [info.name for info in _core.algorithms()]
 
 
+def _aov_names() -> list[str]:
+    from ...film.aovs import AOVS
+
+    return list(AOVS)
+
+
 @app.command()
 @reported
 def render(
@@ -110,6 +116,25 @@ def render(
             help="Render the samples with the indices from A to B - 1 of every pixel, for etendue merge.",
         ),
     ] = None,
+    aov: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--aov",
+            metavar="NAMES",
+            autocompletion=_aov_names,
+            help="Also write what else is known of each pixel, as layers of EXR images: albedo, normal, depth, "
+            "position, object_id, material_id, sample_count, variance, direct, indirect, bsdf_sampling, "
+            "light_sampling, denoising_albedo, denoising_normal. With commas between, or repeated.",
+        ),
+    ] = None,
+    denoise: Annotated[
+        bool,
+        typer.Option(
+            "--denoise",
+            help="Also write each image denoised by Open Image Denoise, as box.denoised.png beside box.png. "
+            "Biased.",
+        ),
+    ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object about the render on the standard output.")
     ] = False,
@@ -152,6 +177,8 @@ def render(
         resume,
         spp,
         None if samples is None else sample_ranges.parse(samples),
+        aovs=[name.strip() for names in aov or () for name in names.split(",")],
+        denoise=denoise,
     )
     code = render_command.run(job)
     if code:
