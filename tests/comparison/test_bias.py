@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from etendue.comparison import bias
 from etendue.comparison.estimators import Estimator
 from etendue.comparison.reference import Reference
-from etendue.comparison.tally import Point, Tally
+from etendue.comparison.tally import Point, Repeat, Tally
 from etendue.film import Film
 
 HEIGHT, WIDTH, REPEATS, SPP = 48, 64, 8, 4
@@ -31,7 +31,7 @@ def tally(random: np.random.Generator, draw: object, truth: Draw) -> Tally:
     found = Tally(Estimator("test"))
     for seed in range(REPEATS):
         samples = np.stack([draw(random, truth) for _ in range(SPP)])  # type: ignore[operator]
-        found.add(film(samples), [Point(SPP, 1, 1, 1, {})], seed)
+        found.add(Repeat(film(samples), [Point(SPP, 1, 1, 1, {})]), seed)
     return found
 
 

@@ -128,7 +128,7 @@ class TestResults:
         comparison = etendue.compare(lit, ["nee"], **FEW)
         film = etendue.load(lit).render(spp=4, mis="none")
         assert comparison.tallies[0].first is not None
-        np.testing.assert_array_equal(comparison.tallies[0].first.image, film.image)
+        np.testing.assert_array_equal(comparison.tallies[0].first.film.image, film.image)
         mean = np.mean([etendue.load(lit).render(spp=4, mis="none", seed=s).image for s in range(3)], axis=0)
         luminance = mean @ np.array([0.2126, 0.7152, 0.0722])
         np.testing.assert_allclose(comparison.tallies[0].luminance, luminance, rtol=1e-5)

@@ -106,7 +106,7 @@ def _run(job: Job) -> int:
         job.say(f"warning: {warning}")
     plan = plan_of(
         scene, chosen, job.spp, job.time, job.reference, job.repeats, job.output, job.size, job.threads,
-        job.data_dirs, job.reference_spp,
+        job.data_dirs, job.reference_spp, [each for each in job.overrides if isinstance(each, str)],
     )  # fmt: skip
     with _shown(job.quiet) as report:
         comparison = finish(plan, report, shlex.join([resuming.program(), *sys.argv[1:]]))

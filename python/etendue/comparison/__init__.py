@@ -8,6 +8,8 @@ comparison.write("compared")    # index.html and results.json
 
 from __future__ import annotations
 
+import functools
+import html
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,8 +21,9 @@ from .. import outputs
 from ..config import Config
 from ..config.overrides import Override
 from ..errors import EtendueError
-from . import extras, repeats, results
+from . import bias, extras, repeats, report, results
 from . import reference as references
+from .bias import Bias
 from .estimators import DEFAULT, Choice, chosen
 from .folder import Folder
 from .goal import Goal
@@ -43,6 +46,7 @@ class Comparison:
     plan: Plan
     reference: Reference
     tallies: list[Tally]
+    verdicts: list[Bias | None]
     results: dict[str, Any] = field(default_factory=dict)
 
     def exceeds(self, limits: Mapping[str, float]) -> list[str]:
@@ -56,10 +60,28 @@ class Comparison:
                     found.append(f"{estimator['name']}: {metric} is {shown}, above {limit:g}")
         return found
 
+    @functools.cached_property
+    def html(self) -> str:
+        """The report: a page that needs nothing but a browser."""
+        return report.html(self.plan, self.reference, self.tallies, self.verdicts, self.results)
+
     def write(self, folder: str | PathLike[str]) -> None:
-        """Write results.json into a folder that is new, empty or of a comparison; raises EtendueError."""
+        """Write index.html and results.json into a folder that is new, empty or of a comparison.
+
+        Raises EtendueError for what keeps them from being written.
+        """
         place = Folder.open(Path(folder))
         outputs.write(place.results, lambda path: path.write_text(json.dumps(self.results, indent=1)))
+        outputs.write(place.index, lambda path: path.write_text(self.html, encoding="utf-8"))
+
+    def _repr_html_(self) -> str:
+        """For Jupyter: the report in a frame of its own, whose style and script stay inside."""
+        page = html.escape(self.html, quote=True)
+        return f'<iframe srcdoc="{page}" style="width:100%;height:60rem;border:0"></iframe>'
+
+    def __str__(self) -> str:
+        names = ", ".join(tally.estimator.name for tally in self.tallies)
+        return f"comparison of {names} on {self.results['scene']['name']}"
 
 
 def compare(
@@ -109,8 +131,12 @@ def plan_of(
     threads: int,
     data_dirs: Sequence[str | PathLike[str]],
     reference_spp: int | None,
+    changes: Sequence[str] = (),
 ) -> Plan:
-    """What `compare` is to render, with everything checked before anything is rendered."""
+    """What `compare` is to render, with everything checked before anything is rendered.
+
+    changes: KEY=VALUE that the source differs by from its file.
+    """
     from ..scene import Scene, load
 
     if not 1 <= repeats <= MOST_REPEATS:
@@ -123,8 +149,8 @@ def plan_of(
     scene = source if isinstance(source, Scene) else load(source, data_dirs)
     width, height = size or (None, None)
     keys = {"framebuffer.sppx": spp, "framebuffer.res_w": width, "framebuffer.res_h": height}
-    changes = [Override(key, value, "compare") for key, value in keys.items() if value is not None]
-    config = scene.config.with_overrides(changes)
+    changed = [Override(key, value, "compare") for key, value in keys.items() if value is not None]
+    config = scene.config.with_overrides(changed)
     scene = scene.changed(config)
     for estimator in wanted:
         estimator.config(config)
@@ -133,13 +159,17 @@ def plan_of(
     if reference is not None:
         given = references.given(Path(reference), config.framebuffer.res_w, config.framebuffer.res_h)
     folder = None if output is None else Folder.open(Path(output))
-    return Plan(scene, wanted, goal, repeats, threads, goal.of_reference(reference_spp), given, folder)
+    told = [f"{change.key}={change.value}" for change in changed if change.key != "framebuffer.sppx"]
+    better = goal.of_reference(reference_spp)
+    return Plan(scene, wanted, goal, repeats, threads, better, given, folder, [*changes, *told])
 
 
 def finish(plan: Plan, progress: Report | None, command: str) -> Comparison:
     """Render what `plan` says, compare, and write the report into its folder, if it has one."""
     reference, tallies = repeats.carry_out(plan, progress)
-    comparison = Comparison(plan, reference, tallies, results.of(plan, reference, tallies, command))
+    verdicts = [bias.judge(tally, reference) if plan.repeats > 1 else None for tally in tallies]
+    numbers = results.of(plan, reference, tallies, verdicts, command)
+    comparison = Comparison(plan, reference, tallies, verdicts, numbers)
     if plan.folder is not None:
         comparison.write(plan.folder.path)
     return comparison

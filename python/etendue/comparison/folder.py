@@ -8,10 +8,9 @@ from pathlib import Path
 
 from .. import outputs
 from ..errors import EtendueError
-from ..film import Film
 from ..film import file as film_file
 from ..film.origin import Origin
-from .tally import Curve, Point
+from .tally import Point, Repeat
 
 _MARK = "comparison.json"
 
@@ -43,7 +42,7 @@ class Folder:
             raise EtendueError(f"{path}: cannot be written: {error.strerror or error}") from None
         return folder
 
-    def find(self, name: str, origin: Origin, goal: str, reference: str) -> tuple[Film, Curve] | None:
+    def find(self, name: str, origin: Origin, goal: str, reference: str) -> Repeat | None:
         """The repeat of this origin, if it was finished against the same reference."""
         film_path, curve_path = self._places(name, origin, goal)
         try:
@@ -55,10 +54,11 @@ class Folder:
         except (EtendueError, OSError, ValueError, KeyError, TypeError):
             return None
         same = film.origin is not None and not film.origin.differences(origin, "", "")
-        return (film, curve) if same and curve and curve[-1].spp == film.spp else None
+        return Repeat(film, curve) if same and curve and curve[-1].spp == film.spp else None
 
-    def keep(self, name: str, film: Film, curve: Curve, goal: str, reference: str) -> None:
+    def keep(self, name: str, repeat: Repeat, goal: str, reference: str) -> None:
         """Keeps a finished repeat."""
+        film, curve = repeat.film, repeat.curve
         assert film.origin is not None
         film_path, curve_path = self._places(name, film.origin, goal)
         film.write(film_path)

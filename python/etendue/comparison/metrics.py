@@ -64,8 +64,3 @@ def quick(image: Image, reference: Image) -> dict[str, float]:
         "relMSE": float(relative.mean()),
         "trimmed relMSE": trimmed_mean(relative),
     }
-
-
-def all_of(image: Image, reference: Image, exposure: float) -> dict[str, float]:
-    """Every error of `FORMULAS`."""
-    return {**quick(image, reference), "FLIP": float(flip_map(image, reference, exposure).mean())}

@@ -12,19 +12,22 @@ from ..config.overrides import Override
 from ..film import Film
 from ..film.origin import Origin
 from ..scene import Scene
-from . import metrics
+from . import metrics, techniques
 from . import reference as references
 from .estimators import Estimator
 from .folder import Folder
 from .goal import Goal
 from .reference import Reference
-from .tally import Curve, Point, Tally
+from .tally import Curve, Point, Repeat, Tally
 from .work import Report, Task, Work
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be rendered. folder: where finished repeats are kept; None: nowhere."""
+    """What is to be rendered.
+
+    folder: where finished repeats are kept; None: nowhere. changes: KEY=VALUE of what differs from the scene file.
+    """
 
     scene: Scene
     estimators: Sequence[Estimator]
@@ -34,6 +37,7 @@ class Plan:
     reference_goal: Goal
     given: Reference | None = None
     folder: Folder | None = None
+    changes: Sequence[str] = ()
 
     @functools.cached_property
     def scenes(self) -> list[Scene]:
@@ -74,10 +78,18 @@ def carry_out(
     }
     needed = 0.0 if plan.given is not None else references.missing(plan.scene, plan.reference_goal)
     first = [Task("reference", needed, "reference")] if needed > 0 else []
-    work = Work([*first, *tasks.values()], report)
+    splits = [
+        Task(f"techniques of {each.name}", 1.0, f"{each.name}, split by technique")
+        for each in plan.estimators
+    ]
+    work = Work([*first, *splits, *tasks.values()], report)
     tallies = [Tally(estimator) for estimator in plan.estimators]
     try:
         reference = _reference(plan, work, first, say)
+        for tally, scene, task in zip(tallies, scenes, splits, strict=True):
+            work.begin(task)
+            tally.techniques = techniques.measured(scene, work.advance)
+            work.finish()
         for repeat, index in turns:
             task = tasks[repeat, index]
             scene = with_seed(scenes[index], repeat)
@@ -91,9 +103,9 @@ def carry_out(
                 work.begin(task)
                 found = render(scene, plan, reference, work.advance)
                 if plan.folder is not None:
-                    plan.folder.keep(task.kind, *found, plan.goal.label, reference.identity)
+                    plan.folder.keep(task.kind, found, plan.goal.label, reference.identity)
                 work.finish()
-            tallies[index].add(*found, scene.config.seed)
+            tallies[index].add(found, scene.config.seed)
     except KeyboardInterrupt:
         raise Interrupted(sum(tally.repeats for tally in tallies), len(turns)) from None
     return reference, tallies
@@ -105,10 +117,8 @@ def with_seed(scene: Scene, repeat: int) -> Scene:
     return dataclasses.replace(scene, config=scene.config.with_overrides([Override("seed", seed, "repeats")]))
 
 
-def render(
-    scene: Scene, plan: Plan, reference: Reference, progress: Callable[[float], object]
-) -> tuple[Film, Curve]:
-    """One repeat: its film, and its errors whenever the samples have doubled. Only rendering counts as time."""
+def render(scene: Scene, plan: Plan, reference: Reference, progress: Callable[[float], object]) -> Repeat:
+    """One repeat, with its errors whenever the samples have doubled. Only rendering counts as time."""
     goal = plan.goal
     film: Film | None = None
     curve: Curve = []
@@ -128,14 +138,12 @@ def render(
         if film.interrupted:
             raise KeyboardInterrupt
         is_last = film.spp >= goal.spp if goal.spp is not None else film.seconds >= 0.98 * goal.amount
-        errors = (
-            metrics.all_of(film.image, reference.image, plan.exposure)
-            if is_last
-            else metrics.quick(film.image, reference.image)
-        )
+        errors = metrics.quick(film.image, reference.image)
         curve.append(Point(film.spp, film.seconds, cpu, film.rays, errors))
         if is_last:
-            return film, curve
+            flip = metrics.flip_map(film.image, reference.image, plan.exposure)
+            errors["FLIP"] = float(flip.mean())
+            return Repeat(film, curve, flip)
         spp *= 2
 
 

@@ -23,11 +23,16 @@ REFERENCE_LIMIT = 0.1
 _MOST_INVALID = 20
 
 
-def of(plan: Plan, reference: Reference, tallies: Sequence[Tally], command: str) -> dict[str, Any]:
+def of(
+    plan: Plan,
+    reference: Reference,
+    tallies: Sequence[Tally],
+    verdicts: Sequence[Bias | None],
+    command: str,
+) -> dict[str, Any]:
     """Everything but the images."""
     from .. import __version__
 
-    verdicts = [bias.judge(tally, reference) if plan.repeats > 1 else None for tally in tallies]
     config = plan.scene.config
     origin = Origin.of(config, plan.scene.contents, plan.scene.data_dirs)
     return {

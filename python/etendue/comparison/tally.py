@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..film import Film
+from . import metrics
 from .estimators import Estimator
 from .metrics import LUMINANCE
+from .techniques import Row
 
 
 @dataclass(frozen=True)
@@ -40,12 +42,20 @@ class Invalid(NamedTuple):
 Curve = list[Point]
 
 
+class Repeat(NamedTuple):
+    """One finished image. flip: its FLIP map; None where it was read from a file."""
+
+    film: Film
+    curve: Curve
+    flip: NDArray[np.float32] | None = None
+
+
 @dataclass
 class Tally:
     """The repeats of one estimator.
 
-    curves: for each repeat, its errors from the first sample on. first: the film of the first repeat, the one
-    that is shown, and its FLIP map.
+    curves: for each repeat, its errors from the first sample on. first: the first repeat, which is shown.
+    techniques: the rows of its pyramid.
     """
 
     estimator: Estimator
@@ -53,19 +63,21 @@ class Tally:
     seeds: list[int] = field(default_factory=list)
     invalid: list[Invalid] = field(default_factory=list)
     invalid_count: int = 0
-    first: Film | None = None
+    first: Repeat | None = None
+    techniques: list[Row] = field(default_factory=list)
     sum: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 3)))
     sum_squares: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 3)))
     valid: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
     _luminance: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
     _luminance_squares: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
 
-    def add(self, film: Film, curve: Curve, seed: int) -> None:
+    def add(self, repeat: Repeat, seed: int) -> None:
         """One more repeat."""
+        film = repeat.film
         valid = (film.sample_count - film.invalid_per_pixel).astype(np.float64)
         luminance = film.image.astype(np.float64) @ LUMINANCE
         if self.first is None:
-            self.first = film
+            self.first = repeat
             self.sum, self.sum_squares, self.valid = film.sum.copy(), film.sum_squares.copy(), valid
             self._luminance, self._luminance_squares = luminance, luminance**2
         else:
@@ -74,10 +86,24 @@ class Tally:
             self.valid += valid
             self._luminance += luminance
             self._luminance_squares += luminance**2
-        self.curves.append(curve)
+        self.curves.append(repeat.curve)
         self.seeds.append(seed)
         self.invalid += [Invalid(x, y, sample, seed) for x, y, sample in film.invalid]
         self.invalid_count += film.invalid_count
+
+    @property
+    def film(self) -> Film:
+        """That of the first repeat."""
+        assert self.first is not None
+        return self.first.film
+
+    def flip_map(self, reference: NDArray[np.float32], exposure: float) -> NDArray[np.float32]:
+        """Of the first repeat, see `metrics.flip_map`."""
+        assert self.first is not None
+        if self.first.flip is None:
+            self.first = self.first._replace(flip=metrics.flip_map(self.film.image, reference, exposure))
+        assert self.first.flip is not None
+        return self.first.flip
 
     @property
     def repeats(self) -> int:
