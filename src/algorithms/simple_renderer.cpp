@@ -13,7 +13,7 @@ class SimpleRenderer : public Algorithm {
     vec3 radiance(Context& context, Ray ray) const override {
         const SurfaceHit hit = context.intersect(ray);
         if (!hit.valid) return hit.Le();
-        if (hit.material->emits() && hit.front) return hit.material->albedo_at(hit.uv);
+        if (hit.material->emits() && hit.front) return hit.material->albedo_at(hit.uv());
         return hit.surface.albedo * std::abs(glm::dot(hit.wo, hit.frame.n));
     }
 };

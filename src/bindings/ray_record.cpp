@@ -1,6 +1,6 @@
 // Timing of nothing but the rays of a render.
-#include "bindings/arrays.h"
 #include "driver/ray_record.h"
+#include "bindings/arrays.h"
 #include "driver/renderer.h"
 
 namespace etendue {

@@ -212,8 +212,8 @@ nb::dict intersect(const Scene& scene, const Vectors3& origin, const Vectors3& d
         set_vec3(position, i, hit.point.position);
         set_vec3(normal, i, hit.point.normal);
         set_vec3(shading, i, hit.frame.n);
-        uv.data()[2 * i] = hit.uv.x;
-        uv.data()[2 * i + 1] = hit.uv.y;
+        uv.data()[2 * i] = hit.uv().x;
+        uv.data()[2 * i + 1] = hit.uv().y;
     }
     nb::dict out;
     out["distance"] = distance, out["position"] = position, out["normal"] = normal,

@@ -15,10 +15,14 @@ template <class... Types>
 struct List {
     template <class Result, class Visit>
     static Result dispatch(BsdfKind kind, Visit&& visit) {
-        Result result{};
-        BsdfKind i = 0;
-        (void)((kind == i++ ? (result = visit(Types{}), true) : false) || ...);
-        return result;
+        return dispatch_from<Result, 0, Types...>(kind, visit);
+    }
+    template <class Result, BsdfKind i, class First, class... Rest>
+    static Result dispatch_from(BsdfKind kind, auto& visit) {
+        if constexpr (sizeof...(Rest) > 0) {
+            if (kind != i) return dispatch_from<Result, i + 1, Rest...>(kind, visit);
+        }
+        return visit(First{});
     }
 
     static std::vector<BsdfInfo> infos() {

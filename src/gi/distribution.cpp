@@ -9,13 +9,18 @@ Distribution1D::Distribution1D(std::span<const double> weights) : cumulative_(we
 
 Distribution1D::Choice Distribution1D::sample(float u) const {
     const double target = u * total_;
-    // The first sum above the target ends the cell; it is strictly above, so the cell has a weight.
-    auto end = std::upper_bound(cumulative_.begin() + 1, cumulative_.end(), target);
-    while (end == cumulative_.end() || *end == *(end - 1)) --end;
-    const double from = *(end - 1), width = *end - from;
-    const auto index = static_cast<uint32_t>(end - cumulative_.begin() - 1);
-    const auto remapped = static_cast<float>((target - from) / width);
-    return {index, static_cast<float>(width / total_), std::clamp(remapped, 0.f, ONE_MINUS_EPSILON)};
+    // The last cell that begins at the target or before; as the target is below the total, it has a weight.
+    uint32_t index = 0;
+    for (auto left = static_cast<uint32_t>(size()); left > 1;) {
+        const uint32_t half = left / 2;
+        // Without a branch, which would be guessed wrong every other time.
+        index += half * (cumulative_[index + half] <= target);
+        left -= half;
+    }
+    const double from = cumulative_[index];
+    const auto width = static_cast<float>(cumulative_[index + 1] - from);
+    const float remapped = static_cast<float>(target - from) / width;
+    return {index, width / static_cast<float>(total_), std::clamp(remapped, 0.f, ONE_MINUS_EPSILON)};
 }
 
 Distribution2D::Distribution2D(std::span<const float> weights, uint32_t width, uint32_t height)

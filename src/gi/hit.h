@@ -20,12 +20,14 @@ struct SurfaceHit {
     vec3 wo{0, 0, 1};           // unit, world: back along the ray
     float distance = INFINITE;  // from the ray's origin
     SurfacePoint point;         // its normal is geometric and on the side of wo
-    vec2 uv{0};
-    Frame frame;  // around the shading normal, on the side of wo
+    Frame frame;                // around the shading normal, on the side of wo
     Surface surface;
-    const Mesh* mesh = nullptr;
     const Material* material = nullptr;
     const Light* light = nullptr;
+    vec3 wo_local{0, 0, 1};  // wo in `frame`
+    const Mesh* mesh = nullptr;
+    uint32_t triangle = 0;
+    vec2 barycentrics{0};  // (b1, b2) of the hit in the triangle
 
     SurfaceHit() = default;
     /// A ray's miss; `sky` may be null.
@@ -39,6 +41,8 @@ struct SurfaceHit {
     /// Whether the BSDF is of this type, e.g. BRDF_SPECULAR: a pure Dirac delta, which no light can be
     /// sampled for.
     bool is_type(BrdfType type) const { return type == BRDF_SPECULAR && bsdf_is_delta(material->bsdf); }
+    /// Texture coordinates; not of a miss.
+    vec2 uv() const { return mesh->uv(triangle, barycentrics); }
     /// Radiance emitted towards wo.
     vec3 Le() const;
 
@@ -55,7 +59,8 @@ struct SurfaceHit {
     Ray ray_towards(const vec3& wi) const { return {point.offset_towards(wi), wi}; }
 
   private:
-    void set_shading_frame(const Mesh& mesh, uint32_t triangle, const vec2& b);
+    /// On the side of wo.
+    vec3 shading_normal() const;
 };
 
 }  // namespace etendue

@@ -30,6 +30,9 @@ struct Material {
     /// A surface less opaque than this is not there.
     static constexpr float CUTOUT_OPACITY = 0.1f;
 
+    bool is_textured() const {
+        return albedo_texture || emission_texture || normal_texture || cutout_texture;
+    }
     bool emits() const { return emissive_strength > 0; }
     bool is_cut_out(const vec2& uv) const {
         return cutout_texture && cutout_texture->opacity(uv) < CUTOUT_OPACITY;

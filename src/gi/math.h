@@ -29,6 +29,22 @@ inline bool is_black(const vec3& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 /// Relative luminance of linear sRGB (Rec. 709 primaries, D65).
 inline float luminance(const vec3& rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
 
+/// The angle of (x, y), as std::atan2 but a fifth of its time, off by up to 3e-7.
+inline float fast_atan2(float y, float x) {
+    const float ax = std::abs(x), ay = std::abs(y);
+    const float larger = std::max(ax, ay);
+    // In [0, 1], where this polynomial has the smallest largest error of its degree.
+    const float a = larger > 0 ? std::min(ax, ay) / larger : 0, a2 = a * a;
+    constexpr float c[] = {0.99999934f, -0.3332986f,  0.19946559f,  -0.13908596f,
+                           0.09642113f, -0.05591121f, 0.021862205f, -0.0040543648f};
+    float p = c[7];
+    for (int i = 6; i >= 0; --i) p = p * a2 + c[i];
+    float angle = a * p;
+    if (ay > ax) angle = PI / 2 - angle;
+    if (x < 0) angle = PI - angle;
+    return std::copysign(angle, y);
+}
+
 /// Bound on the relative error of n float operations in a row (pbrt 4th ed., 6.8.1).
 inline constexpr float error_bound(int n) {
     constexpr float half_ulp = std::numeric_limits<float>::epsilon() / 2;

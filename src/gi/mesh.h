@@ -8,6 +8,26 @@
 
 namespace etendue {
 
+/// What every hit wants to know of its triangle, in one line of the cache.
+struct alignas(64) Facet {
+    std::array<vec3, 3> corners;
+    vec3 normal;          // of the front, unit
+    float reach;          // see SurfacePoint
+    bool smooth = false;  // the normals at its corners are others
+
+    explicit Facet(const std::array<vec3, 3>& corners);
+
+    SurfacePoint point(const vec2& b) const {
+        return {(1 - b.x - b.y) * corners[0] + b.x * corners[1] + b.y * corners[2], normal, reach};
+    }
+};
+
+/// What a smooth or textured one needs besides, in another.
+struct alignas(64) FacetShading {
+    std::array<vec3, 3> normals;
+    std::array<vec2, 3> uvs;
+};
+
 struct Mesh {
     // One vertex more than there are: Embree reads 16 bytes at the last one.
     std::vector<vec3> vertices;
@@ -16,41 +36,28 @@ struct Mesh {
     std::vector<std::array<uint32_t, 3>> triangles;
     uint32_t material = 0;
 
+    // Made of these by `pack`, one a triangle.
+    std::vector<Facet> facets;
+    std::vector<FacetShading> shading;  // empty where there are neither normals nor uvs
+
     /// Coordinates beyond this are refused: the square of a triangle's area must fit single precision.
     static constexpr float FARTHEST = 1e9f;
 
     size_t vertex_count() const { return vertices.size() - 1; }
 
-    std::array<vec3, 3> corners(uint32_t triangle) const {
-        const auto& [a, b, c] = triangles[triangle];
-        return {vertices[a], vertices[b], vertices[c]};
-    }
+    /// Must be called before anything of the below.
+    void pack();
 
     float area(uint32_t triangle) const {
-        const auto [a, b, c] = corners(triangle);
+        const auto& [a, b, c] = facets[triangle].corners;
         return glm::length(glm::cross(b - a, c - a)) / 2;
     }
 
     /// The texture coordinates at barycentrics (b1, b2); the barycentrics themselves where the mesh has none.
     vec2 uv(uint32_t triangle, const vec2& b) const {
         if (uvs.empty()) return b;
-        const auto& [i, j, k] = triangles[triangle];
-        return (1 - b.x - b.y) * uvs[i] + b.x * uvs[j] + b.y * uvs[k];
-    }
-
-    /// The point at barycentrics (b1, b2), its geometric normal, and a bound on its error: that of the sum
-    /// below (pbrt 4th ed., 6.8.4), and that of the intersection test, which subtracts corners from the ray's
-    /// origin and so rounds at the size of the triangle.  The second is what keeps a ray off a wall that lies
-    /// in a coordinate plane, where the sum is exact.
-    SurfacePoint point(uint32_t triangle, const vec2& b) const {
-        const auto [v0, v1, v2] = corners(triangle);
-        const vec3 p0 = (1 - b.x - b.y) * v0, p1 = b.x * v1, p2 = b.y * v2;
-        const vec3 edge1 = v1 - v0, edge2 = v2 - v0;
-        const float size = std::max(max_component(glm::abs(edge1)), max_component(glm::abs(edge2)));
-        return {p0 + p1 + p2,
-                error_bound(7) * (glm::abs(p0) + glm::abs(p1) + glm::abs(p2)) + error_bound(4) * size,
-                // Scaled first: the square of a small triangle's area would underflow to a normal of NaN.
-                glm::normalize(glm::cross(edge1 / size, edge2 / size))};
+        const auto& [uv0, uv1, uv2] = shading[triangle].uvs;
+        return (1 - b.x - b.y) * uv0 + b.x * uv1 + b.y * uv2;
     }
 };
 

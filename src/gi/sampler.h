@@ -2,18 +2,22 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <string_view>
 
 #include "gi/math.h"
 
 namespace etendue {
 
-/// A bijection of 64-bit words in which every input bit moves every output bit.
+/// Bijections of words in which every input bit moves every output bit.
 inline uint64_t mix_bits(uint64_t v) {
     v = (v ^ (v >> 31)) * 0x7fb5d329728ea185ull;
     v = (v ^ (v >> 27)) * 0x81dadef4bc2dd44dull;
     return v ^ (v >> 33);
+}
+inline uint32_t mix_bits32(uint32_t v) {
+    v = (v ^ (v >> 16)) * 0x7feb352du;
+    v = (v ^ (v >> 15)) * 0x846ca68bu;
+    return v ^ (v >> 16);
 }
 
 /// One sample's stream of numbers in [0, 1).
@@ -42,45 +46,49 @@ class Sampler {
     /// Jumps to the dimensions of the path's vertex `depth` (0: the camera), so that what one vertex draws
     /// does not shift the dimensions of the next, whatever branches it took.
     void start_vertex(uint32_t depth) {
-        dimension_ = depth * DRAWS_PER_VERTEX;
+        dimension_ = depth * DRAWS_AT_ONCE;
+        used_ = DRAWS_AT_ONCE;
         if (kind_ == Kind::independent) state_ = mix_bits(key_ + dimension_);
     }
 
-    float next_1d() {
-        if (kind_ == Kind::independent) return to_float(pcg());
-        const uint64_t h = next_hash();
-        return to_float(reverse_bits(scramble(shuffled_index(h), high(h))));
-    }
+    float next_1d() { return kind_ == Kind::independent ? to_float(pcg()) : x_[next()]; }
 
     vec2 next_2d() {
         if (kind_ == Kind::independent) {
             const float x = to_float(pcg());
             return {x, to_float(pcg())};
         }
-        const uint64_t h = next_hash();
-        const uint32_t index = shuffled_index(h);
-        // Sobol's first coordinate is the index with its bits reversed, so the index is that coordinate
-        // reversed.
-        const uint32_t x = scramble(index, high(h));
-        const uint32_t y = scramble(second_coordinate_reversed(index), low(mix_bits(h)));
-        return {to_float(reverse_bits(x)), to_float(reverse_bits(y))};
+        const uint32_t i = next();
+        return {x_[i], y_[i]};
     }
 
   private:
-    static constexpr uint32_t DRAWS_PER_VERTEX = 8;
+    // Sobol draws of a vertex are made together, in the lanes of vector instructions: eight cost little more than one.
+    static constexpr uint32_t DRAWS_AT_ONCE = 8;
+    // Between the dimensions of a vertex's first eight draws and those of the eight after them: beyond all vertices.
+    static constexpr uint32_t FURTHER_DRAWS = 1u << 24;
 
     static uint32_t low(uint64_t h) { return static_cast<uint32_t>(h); }
     static uint32_t high(uint64_t h) { return static_cast<uint32_t>(h >> 32); }
     /// Cut to the 24 digits of a float, not rounded: a point stays in its stratum, and below one.
     static float to_float(uint32_t x) {
-        return static_cast<float>(x & ~(0xffu >> std::countl_zero(x | 1))) * 0x1p-32f;
+        // As many of the last bits as the first eight have digits, without the count of leading zeros that vector
+        // instructions lack; then by halves, as they convert signed numbers alone.
+        uint32_t excess = x >> 24;
+        excess |= excess >> 1;
+        excess |= excess >> 2;
+        excess |= excess >> 4;
+        x &= ~excess;
+        return static_cast<float>(static_cast<int32_t>(x >> 16)) * 0x1p-16f +
+               static_cast<float>(static_cast<int32_t>(x & 0xffffu)) * 0x1p-32f;
     }
 
     static uint32_t reverse_bits(uint32_t x) {
         x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
         x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
         x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
-        return __builtin_bswap32(x);
+        x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+        return (x >> 16) | (x << 16);
     }
 
     /// Owen's scrambling of a coordinate whose bits are reversed: a hash in which every bit depends on the
@@ -94,8 +102,6 @@ class Sampler {
         return x;
     }
 
-    uint32_t shuffled_index(uint64_t h) const { return reverse_bits(scramble(reversed_index_, low(h))); }
-
     /// Sobol's second coordinate with its bits reversed.  Its generator matrix is Pascal's triangle modulo 2:
     /// bit j is the parity of those index bits k whose binary digits cover j's (Lucas), a sum over supersets
     /// that takes five steps.
@@ -108,7 +114,24 @@ class Sampler {
         return x;
     }
 
-    uint64_t next_hash() { return mix_bits(key_ ^ (uint64_t{++dimension_} << 32)); }
+    uint32_t next() {
+        if (used_ == DRAWS_AT_ONCE) draw();
+        return used_++;
+    }
+
+    void draw() {
+        for (uint32_t i = 0; i < DRAWS_AT_ONCE; ++i) {
+            const uint32_t h0 = mix_bits32(low(key_) + (dimension_ + i) * 0x9e3779b9u);
+            const uint32_t h1 = mix_bits32(h0 ^ high(key_)), h2 = mix_bits32(h1 + 0x9e3779b9u);
+            // Sobol's first coordinate is the index with its bits reversed, so the index is that coordinate
+            // reversed.
+            const uint32_t index = reverse_bits(scramble(reversed_index_, h0));
+            x_[i] = to_float(reverse_bits(scramble(index, h1)));
+            y_[i] = to_float(reverse_bits(scramble(second_coordinate_reversed(index), h2)));
+        }
+        dimension_ += FURTHER_DRAWS;
+        used_ = 0;
+    }
 
     uint32_t pcg() {
         const uint64_t old = state_;
@@ -121,7 +144,10 @@ class Sampler {
     Kind kind_;
     uint32_t dimension_ = 0;
     uint32_t reversed_index_ = 0;
+    uint32_t used_ = DRAWS_AT_ONCE;
     uint64_t seed_, key_ = 0, state_ = 0;
+    // The first and the second coordinate of the draws that have been made.
+    float x_[DRAWS_AT_ONCE] = {}, y_[DRAWS_AT_ONCE] = {};
 };
 
 }  // namespace etendue

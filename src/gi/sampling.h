@@ -9,11 +9,15 @@ namespace etendue {
 /// Uniform on the unit disc, equal areas and little distortion (Shirley and Chiu 1997). pdf_area = 1 / pi.
 inline vec2 uniform_disc(const vec2& u) {
     const vec2 d = 2.f * u - 1.f;
-    if (d.x == 0 && d.y == 0) return d;
     const bool wide = std::abs(d.x) > std::abs(d.y);
-    const float r = wide ? d.x : d.y;
-    const float phi = wide ? (PI / 4) * (d.y / d.x) : (PI / 2) - (PI / 4) * (d.x / d.y);
-    return r * vec2(std::cos(phi), std::sin(phi));
+    const float r = wide ? d.x : d.y, other = wide ? d.y : d.x;
+    if (r == 0) return d;
+    // In the other half of the disc x and y change places, so that the angle is at most pi / 4 from an axis, where
+    // few terms of sine and cosine are exact to a float.
+    const float phi = (PI / 4) * (other / r), phi2 = phi * phi;
+    const float sin = phi * (1 + phi2 * (-1 / 6.f + phi2 * (1 / 120.f - phi2 / 5040)));
+    const float cos = 1 + phi2 * (-1 / 2.f + phi2 * (1 / 24.f + phi2 * (-1 / 720.f + phi2 / 40320)));
+    return r * (wide ? vec2(cos, sin) : vec2(sin, cos));
 }
 
 /// Cosine-weighted on the hemisphere around +z (Malley's method). pdf = cosine_hemisphere_pdf(z).
@@ -39,14 +43,7 @@ inline constexpr float UNIFORM_SPHERE_PDF = INV_PI / 4;
 
 /// Barycentrics (b1, b2) uniform over a triangle: the square folded along its diagonal, which keeps
 /// stratified points stratified (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
-inline vec2 uniform_triangle(const vec2& u) {
-    if (u.y > u.x) {
-        const float x = u.x / 2;
-        return {x, u.y - x};
-    }
-    const float y = u.y / 2;
-    return {u.x - y, y};
-}
+inline vec2 uniform_triangle(const vec2& u) { return u - std::min(u.x, u.y) / 2; }
 
 /// Weight of technique a, one sample each, by the balance heuristic (Veach 1997, 9.2.2). pdf_a > 0, one
 /// measure for both.

@@ -26,14 +26,16 @@ void cutout_filter(const RTCFilterFunctionNArguments* args) {
     }
 }
 
-RTCRay to_embree(const Ray& ray) {
-    RTCRay r{};
+/// Fills in what the library reads.
+void set_ray(RTCRay& r, const Ray& ray) {
     r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
     r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
     r.tnear = 0;
+    r.time = 0;
     r.tfar = ray.t_max;
     r.mask = ~0u;
-    return r;
+    r.id = 0;
+    r.flags = 0;
 }
 
 }  // namespace
@@ -51,7 +53,8 @@ struct Scene::Geometry {
              const std::vector<Material>& materials)
         : meshes(std::move(all_meshes)), textures(std::move(all_textures)), device(rtcNewDevice(nullptr)) {
         if (!device) throw std::runtime_error("Embree found no way to run on this processor");
-        for (const Mesh& mesh : meshes) {
+        for (Mesh& mesh : meshes) {
+            mesh.pack();
             for (size_t i = 0; i < mesh.vertex_count(); ++i) {
                 lower = glm::min(lower, mesh.vertices[i]);
                 upper = glm::max(upper, mesh.vertices[i]);
@@ -99,9 +102,10 @@ struct Scene::Geometry {
     }
 
     RTCRayHit first_hit(const Ray& ray) const {
-        RTCRayHit query{};
-        query.ray = to_embree(ray);
+        RTCRayHit query;
+        set_ray(query.ray, ray);
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
         rtcIntersect1(scene, &query);
 #else
@@ -128,19 +132,18 @@ Scene::Scene(const Scene& other, std::vector<Material> materials, std::optional<
 
 Scene::Scene(std::shared_ptr<const Geometry> geometry, std::vector<Material> materials,
              std::optional<Sky> sky)
-    : geometry_(std::move(geometry)),
-      materials_(std::move(materials)),
-      sky_image_(std::move(sky)),
-      mesh_lights_(geometry_->meshes.size(), nullptr) {
+    : geometry_(std::move(geometry)), materials_(std::move(materials)), sky_image_(std::move(sky)) {
+    parts_.reserve(meshes().size());
     for (const Mesh& mesh : meshes()) {
         if (mesh.material >= materials_.size())
             throw std::invalid_argument("a mesh names a material that is not there");
+        parts_.push_back({&mesh, &materials_[mesh.material], nullptr});
     }
     const float radius = lower().x <= upper().x ? glm::length(upper() - lower()) / 2 : 1.f;
     lights_ = Light::find_all({meshes(), materials_, sky_image_ ? &*sky_image_ : nullptr, radius});
     for (const Light& light : lights_) {
         if (light.mesh()) {
-            mesh_lights_[light.mesh() - meshes().data()] = &light;
+            parts_[light.mesh() - meshes().data()].light = &light;
         } else {
             sky_ = &light;
         }
@@ -156,19 +159,14 @@ const vec3& Scene::upper() const { return geometry_->upper; }
 SurfaceHit Scene::intersect(const Ray& ray) const {
     const RTCRayHit found = geometry_->first_hit(ray);
     if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {ray, sky_};
-    const Mesh& mesh = geometry_->meshes[found.hit.geomID];
+    const Part& part = parts_[found.hit.geomID];
     const vec2 barycentrics(found.hit.u, found.hit.v);
-    return {ray,
-            found.ray.tfar,
-            mesh,
-            found.hit.primID,
-            barycentrics,
-            materials_[mesh.material],
-            mesh_lights_[found.hit.geomID]};
+    return {ray, found.ray.tfar, *part.mesh, found.hit.primID, barycentrics, *part.material, part.light};
 }
 
 bool Scene::occluded(const Ray& ray) const {
-    RTCRay query = to_embree(ray);
+    RTCRay query;
+    set_ray(query, ray);
 #if RTC_VERSION_MAJOR >= 4
     rtcOccluded1(geometry_->scene, &query);
 #else
@@ -201,7 +199,8 @@ size_t Scene::memory_bytes() const {
     size_t bytes = static_cast<size_t>(geometry_->bytes.load());
     for (const Mesh& mesh : meshes()) {
         bytes += (mesh.vertices.size() + mesh.normals.size()) * sizeof(vec3) +
-                 mesh.uvs.size() * sizeof(vec2) + mesh.triangles.size() * sizeof(mesh.triangles[0]);
+                 mesh.uvs.size() * sizeof(vec2) + mesh.triangles.size() * sizeof(mesh.triangles[0]) +
+                 mesh.facets.size() * sizeof(Facet) + mesh.shading.size() * sizeof(FacetShading);
     }
     for (const auto& texture : textures()) bytes += texture->memory_bytes();
     if (sky_image_) bytes += sky_image_->pixels.size() * (sizeof(vec3) + sizeof(float));

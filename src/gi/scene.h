@@ -62,6 +62,12 @@ class Scene {
 
   private:
     struct Geometry;
+    /// What belongs to a mesh, by its index; `light` is null where it does not emit.
+    struct Part {
+        const Mesh* mesh;
+        const Material* material;
+        const Light* light;
+    };
 
     Scene(std::shared_ptr<const Geometry> geometry, std::vector<Material> materials, std::optional<Sky> sky);
 
@@ -69,7 +75,7 @@ class Scene {
     std::vector<Material> materials_;
     std::optional<Sky> sky_image_;
     std::vector<Light> lights_;
-    std::vector<const Light*> mesh_lights_;  // one a mesh, null where it does not emit
+    std::vector<Part> parts_;
     const Light* sky_ = nullptr;
     LightSampler light_sampler_;
 };

@@ -80,8 +80,8 @@ MUTANTS = (
     Mutant(
         "back side of a light shining",
         "gi/lights/area_light.h",
-        "hit.front ? material_->emission_at(hit.uv) : vec3(0)",
-        "material_->emission_at(hit.uv)",
+        "hit.front ? material_->emission_at(hit.uv()) : vec3(0)",
+        "material_->emission_at(hit.uv())",
         (ANALYTIC, "-k", "back_of_a_lamp"),
     ),
     Mutant(
@@ -94,8 +94,8 @@ MUTANTS = (
     Mutant(
         "points crowd in a corner of a triangle",
         "gi/sampling.h",
-        "{u.x - y, y}",
-        "{(u.x - y) * (u.x - y), y}",
+        "u - std::min(u.x, u.y) / 2",
+        "u * u - std::min(u.x * u.x, u.y * u.y) / 2",
         (ANALYTIC, "-k", "parallel_plates"),
     ),
     Mutant(
@@ -129,15 +129,15 @@ MUTANTS = (
     Mutant(
         "sky without sin theta",
         "gi/lights/sky_light.cpp",
-        "cells_.pmf(x, y) / solid_angle",
-        "cells_.pmf(x, y) / (4 * PI / static_cast<float>(w * h))",
+        "pmf / solid_angle",
+        "pmf / (4 * PI / static_cast<float>(sky_->width * sky_->height))",
         (ANALYTIC, "-k", "uniform_sky"),
     ),
     Mutant(
         "sky sampled where it is not seen",
         "gi/lights/sky_light.cpp",
-        "2 * PI * (static_cast<float>(cell.x) + cell.remapped.x)",
-        "-2 * PI * (static_cast<float>(cell.x) + cell.remapped.x)",
+        "2 * PI * turns",
+        "-2 * PI * turns",
         (LIGHTS,),
     ),
     Mutant(
@@ -198,7 +198,7 @@ MUTANTS = (
     ),
     Mutant(
         "rays that start on the surface itself",
-        "gi/ray.h",
+        "gi/mesh.cpp",
         "glm::dot(glm::abs(normal), error)",
         "0.f",
         furnace(),
@@ -213,8 +213,8 @@ MUTANTS = (
     Mutant(
         "Sobol's second coordinate is its first",
         "gi/sampler.h",
-        "scramble(second_coordinate_reversed(index), low(mix_bits(h)))",
-        "scramble(index, low(mix_bits(h)))",
+        "scramble(second_coordinate_reversed(index), h2)",
+        "scramble(index, h2)",
         (SAMPLER,),
     ),
 )

@@ -22,16 +22,18 @@ AreaLight::AreaLight(const Mesh& mesh, const Material& material) : mesh_(&mesh),
 std::optional<LightSample> AreaLight::sample_Li(const vec3& reference, const vec2& u) const {
     const auto triangle = triangles_.sample(u.x);
     const vec2 b = uniform_triangle({triangle.remapped, u.y});
-    const SurfacePoint point = mesh_->point(triangle.index, b);
+    const SurfacePoint point = mesh_->facets[triangle.index].point(b);
     const vec3 to_light = point.position - reference;
     const float distance2 = length2(to_light);
     if (distance2 == 0) return std::nullopt;
     const vec3 wi = to_light / std::sqrt(distance2);
     const float cos_light = -glm::dot(wi, point.normal);
     if (cos_light <= 0) return std::nullopt;
-    const vec2 uv = mesh_->uv(triangle.index, b);
+    const vec2 uv = material_->is_textured() ? mesh_->uv(triangle.index, b) : vec2(0);
     if (material_->is_cut_out(uv)) return std::nullopt;
-    return LightSample{material_->emission_at(uv), wi, distance2 / (cos_light * area_), point, false};
+    // In place: a copy would wait for what was just written.
+    return std::optional<LightSample>(std::in_place, material_->emission_at(uv), wi,
+                                      distance2 / (cos_light * area_), point, false);
 }
 
 float AreaLight::pdf_Li(const SurfaceHit& hit) const {

@@ -18,7 +18,7 @@ class AreaLight {
     /// A triangle chosen by area and a uniform point on it: pdf_area = 1 / area, turned into solid angle.
     std::optional<LightSample> sample_Li(const vec3& reference, const vec2& u) const;
     float pdf_Li(const SurfaceHit& hit) const;
-    vec3 Le(const SurfaceHit& hit) const { return hit.front ? material_->emission_at(hit.uv) : vec3(0); }
+    vec3 Le(const SurfaceHit& hit) const { return hit.front ? material_->emission_at(hit.uv()) : vec3(0); }
     vec3 Le(const vec3&) const { return vec3(0); }
     float power() const { return power_; }
     const Mesh* mesh() const { return mesh_; }

@@ -4,17 +4,12 @@ namespace etendue {
 
 namespace {
 
-vec3 direction_of(float cos_theta, float phi) {
-    const float sin_theta = safe_sqrt(1 - cos_theta * cos_theta);
-    return {sin_theta * std::cos(phi), cos_theta, sin_theta * std::sin(phi)};
-}
-
 /// Image coordinates of a direction, u and v in [0, 1].
 vec2 uv_of(const vec3& direction) {
-    const float phi = std::atan2(direction.z, direction.x);
+    const float turns = fast_atan2(direction.z, direction.x) * (INV_PI / 2);
     // acos loses its digits at the poles.
-    const float theta = std::atan2(std::sqrt(sqr(direction.x) + sqr(direction.z)), direction.y);
-    return {phi < 0 ? phi / (2 * PI) + 1 : phi / (2 * PI), theta * INV_PI};
+    const float theta = fast_atan2(std::sqrt(sqr(direction.x) + sqr(direction.z)), direction.y);
+    return {turns < 0 ? turns + 1 : turns, theta * INV_PI};
 }
 
 }  // namespace
@@ -65,8 +60,10 @@ vec3 SkyLight::pixel(int32_t x, int32_t y) const {
 }
 
 vec3 SkyLight::Le(const vec3& direction) const {
-    if (sky_->width == 0) return vec3(sky_->intensity);
-    const vec2 uv = uv_of(direction);
+    return sky_->width == 0 ? vec3(sky_->intensity) : radiance_at(uv_of(direction));
+}
+
+vec3 SkyLight::radiance_at(const vec2& uv) const {
     const float x = uv.x * static_cast<float>(sky_->width) - 0.5f,
                 y = uv.y * static_cast<float>(sky_->height) - 0.5f;
     const float x_floor = std::floor(x), y_floor = std::floor(y);
@@ -77,18 +74,19 @@ vec3 SkyLight::Le(const vec3& direction) const {
 }
 
 std::optional<LightSample> SkyLight::sample_Li(const vec3&, const vec2& u) const {
-    const auto towards = [this](const vec3& wi, float pdf) { return LightSample{Le(wi), wi, pdf, {}, true}; };
-    if (sky_->width == 0) return towards(uniform_sphere(u), UNIFORM_SPHERE_PDF);
+    if (sky_->width == 0) {
+        return LightSample{vec3(sky_->intensity), uniform_sphere(u), UNIFORM_SPHERE_PDF, {}, true};
+    }
     if (cells_.total() <= 0) return std::nullopt;
     // A cell by its power, then uniformly in solid angle within it.
     const Distribution2D::Choice cell = cells_.sample(u);
     const float cos_theta = glm::mix(row_cosines_[cell.y], row_cosines_[cell.y + 1], cell.remapped.y);
-    const float phi =
-        2 * PI * (static_cast<float>(cell.x) + cell.remapped.x) / static_cast<float>(sky_->width);
-    const vec3 wi = direction_of(cos_theta, phi);
-    const float pdf_wi = pdf(wi);
-    if (pdf_wi <= 0) return std::nullopt;
-    return towards(wi, pdf_wi);
+    const float sin_theta = safe_sqrt(1 - cos_theta * cos_theta);
+    const float turns = (static_cast<float>(cell.x) + cell.remapped.x) / static_cast<float>(sky_->width);
+    const float phi = 2 * PI * turns;
+    const vec3 wi(sin_theta * std::cos(phi), cos_theta, sin_theta * std::sin(phi));
+    const vec3 radiance = radiance_at({turns, fast_atan2(sin_theta, cos_theta) * INV_PI});
+    return LightSample{radiance, wi, pdf_in_row(cell.y, cell.pmf), {}, true};
 }
 
 float SkyLight::pdf(const vec3& direction) const {
@@ -98,8 +96,13 @@ float SkyLight::pdf(const vec3& direction) const {
     const vec2 uv = uv_of(direction);
     const uint32_t x = std::min(static_cast<uint32_t>(uv.x * static_cast<float>(w)), w - 1);
     const uint32_t y = std::min(static_cast<uint32_t>(uv.y * static_cast<float>(h)), h - 1);
-    const float solid_angle = 2 * PI / static_cast<float>(w) * (row_cosines_[y] - row_cosines_[y + 1]);
-    return cells_.pmf(x, y) / solid_angle;
+    return pdf_in_row(y, cells_.pmf(x, y));
+}
+
+float SkyLight::pdf_in_row(uint32_t y, float pmf) const {
+    const float solid_angle =
+        2 * PI / static_cast<float>(sky_->width) * (row_cosines_[y] - row_cosines_[y + 1]);
+    return pmf / solid_angle;
 }
 
 }  // namespace etendue

@@ -39,6 +39,9 @@ class SkyLight {
 
   private:
     vec3 pixel(int32_t x, int32_t y) const;
+    vec3 radiance_at(const vec2& uv) const;
+    /// Solid-angle density in a cell of row y that is chosen with probability `pmf`.
+    float pdf_in_row(uint32_t y, float pmf) const;
 
     const Sky* sky_;
     // One cell a pixel, weighted by luminance x solid angle.
