@@ -1,6 +1,6 @@
 """How close a render comes to the bare tracing of its own rays.
 
-    fraction of limit = seconds to trace the render's rays again and nothing else / seconds of the render
+fraction of limit = seconds to trace the render's rays again and nothing else / seconds of the render
 """
 
 from __future__ import annotations

@@ -103,7 +103,8 @@ def room() -> World:
         waves = rng.uniform(4, 25, (8, 2)), rng.uniform(0, 6, 8)
 
         def f(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-            height = sum(0.006 * np.sin(k[0] * u + k[1] * v + p) for k, p in zip(*waves, strict=True))
+            edge = np.minimum(1, 20 * np.minimum.reduce([u, 1 - u, v, 1 - v]))  # walls meet in straight lines
+            height = edge * sum(0.006 * np.sin(k[0] * u + k[1] * v + p) for k, p in zip(*waves, strict=True))
             return o + u[:, None] * s_ + v[:, None] * t_ + height[:, None] * n
 
         return shapes.surface(f, 200, 200)
@@ -120,7 +121,9 @@ def room() -> World:
         x, z = rng.uniform(-2.4, 2.4), rng.uniform(-2.4, 1.2)
         k = rng.uniform(8, 30, 3) / radius
         bump = lambda p, k=k, r=radius: p * (1 + 0.04 * np.sin(p @ np.diag(k)).sum(1) / r * r)[:, None]  # noqa: E731
-        b.add(shapes.sphere(radius, 144, 90).bent(bump).moved(x, radius + rng.uniform(0, 1.5), z), kinds[i % 4])
+        b.add(
+            shapes.sphere(radius, 144, 90).bent(bump).moved(x, radius + rng.uniform(0, 1.5), z), kinds[i % 4]
+        )
     lamp = shapes.quad((-0.5, 2.9, 0.5), (-0.5, 2.9, -0.5), (0.5, 2.9, -0.5), (0.5, 2.9, 0.5))
     b.add(lamp, b.material("light", 1, 0.95, 0.85, radiance=20))
     return b.world("room", View((0, 1.6, 2.8), (0, -0.1, -1), (0, 1, 0), 65))
@@ -133,10 +136,12 @@ def lamps() -> World:
     b.add(shapes.quad((-12, 0, 12), (12, 0, 12), (12, 0, -12), (-12, 0, -12)), grey[1])
     for i in range(150):
         height = rng.uniform(0.2, 1.6)
-        block = shapes.box(rng.uniform(0.2, 0.7), height, rng.uniform(0.2, 0.7)).turned("y", rng.uniform(0, 90))
+        block = shapes.box(rng.uniform(0.2, 0.7), height, rng.uniform(0.2, 0.7)).turned(
+            "y", rng.uniform(0, 90)
+        )
         b.add(block.moved(rng.uniform(-8, 8), height / 2, rng.uniform(-12, 3)), grey[i % 3])
     coin = shapes.disc(0.03, 6)
-    for i in range(10_000):
+    for _ in range(10_000):
         colour = 0.3 + 0.7 * rng.random(3)
         lamp = b.material("light", *colour, radiance=float(100 * np.exp(rng.normal())))
         x, y, z = rng.uniform(-8, 8), rng.uniform(0.4, 3), rng.uniform(-12, 3)
@@ -168,8 +173,7 @@ def sun() -> World:
     ground = shapes.quad((-8, 0, 8), (8, 0, 8), (8, 0, -8), (-8, 0, -8))
     b.add(ground, b.material("diffuse", 0.4, 0.4, 0.42))
     h, w = 256, 512
-    v, u = np.meshgrid((np.arange(h) + 0.5) / h, (np.arange(w) + 0.5) / w, indexing="ij")
-    up = np.cos(np.pi * v)
+    up = np.repeat(np.cos(np.pi * (np.arange(h) + 0.5) / h)[:, None], w, axis=1)
     sky = np.where(up > 0, 0.25 + 0.5 * (1 - up), 0.1)[..., None] * np.array([0.6, 0.75, 1.0])
     sky[70:73, 300:303] += 9000
     return b.world("sun", View((0.4, 2.2, 4.2), (-0.08, -0.38, -1), (0, 1, 0), 45), sky.astype(np.float32))

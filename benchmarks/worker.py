@@ -1,6 +1,6 @@
 """One renderer in a process of its own: reads commands, a JSON object a line, and answers alike.
 
-    python -m benchmarks.worker MODULE WORLD '{"width": ..., "height": ..., "threads": ..., "options": {...}}'
+python -m benchmarks.worker MODULE WORLD '{"width": ..., "height": ..., "threads": ..., "options": {...}}'
 """
 
 from __future__ import annotations

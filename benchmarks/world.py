@@ -106,9 +106,14 @@ class World:
         """What `write` wrote."""
         with np.load(path) as file:
             about = json.loads(str(file["about"]))
-            get = lambda name: file[name] if name in file else None  # noqa: E731
             meshes = [
-                Mesh(file[f"vertices{i}"], file[f"triangles{i}"], get(f"normals{i}"), get(f"uvs{i}"), material)
+                Mesh(
+                    file[f"vertices{i}"],
+                    file[f"triangles{i}"],
+                    file.get(f"normals{i}"),
+                    file.get(f"uvs{i}"),
+                    material,
+                )
                 for i, material in enumerate(about["mesh_materials"])
             ]
             return World(
@@ -118,5 +123,5 @@ class World:
                 View(**about["view"]),
                 about["edges"],
                 [file[f"texture{i}"] for i in range(about["textures"])],
-                get("sky"),
+                file.get("sky"),
             )

@@ -21,7 +21,8 @@ def core_at(path: str | None) -> Any:
 
         return _core
     spec = importlib.util.spec_from_file_location("etendue._core", path)
-    assert spec is not None and spec.loader is not None
+    if spec is None or spec.loader is None:
+        raise ImportError(f"{path} is no compiled module")
     core = importlib.util.module_from_spec(spec)
     sys.modules["etendue._core"] = core
     spec.loader.exec_module(core)

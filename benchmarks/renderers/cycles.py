@@ -18,9 +18,7 @@ class Renderer:
 
     rays = None
 
-    def __init__(
-        self, world: World, width: int, height: int, threads: int, options: dict[str, Any]
-    ) -> None:
+    def __init__(self, world: World, width: int, height: int, threads: int, options: dict[str, Any]) -> None:
         bpy.ops.wm.read_factory_settings(use_empty=True)
         self.scene = scene = bpy.context.scene
         self._images = [_image(f"texture{i}", pixels) for i, pixels in enumerate(world.textures)]
@@ -86,7 +84,9 @@ class Renderer:
             shader = self._lobes(m, nodes, links, colour)
         if m.radiance > 0:
             emission = nodes.new("ShaderNodeEmission")
-            colour(emission.inputs["Color"], m.emission_texture if m.emission_texture >= 0 else m.albedo_texture)
+            colour(
+                emission.inputs["Color"], m.emission_texture if m.emission_texture >= 0 else m.albedo_texture
+            )
             # From the front alone.
             geometry, front = nodes.new("ShaderNodeNewGeometry"), nodes.new("ShaderNodeMath")
             front.operation = "MULTIPLY_ADD"

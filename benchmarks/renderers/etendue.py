@@ -20,9 +20,7 @@ class Renderer:
 
     rays: int | None = None
 
-    def __init__(
-        self, world: World, width: int, height: int, threads: int, options: dict[str, Any]
-    ) -> None:
+    def __init__(self, world: World, width: int, height: int, threads: int, options: dict[str, Any]) -> None:
         self.threads, self.options = threads, options
         textures = [_core.Texture(pixels, pixels.dtype == np.uint8) for pixels in world.textures]
         materials = [

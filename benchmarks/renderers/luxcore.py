@@ -17,9 +17,7 @@ class Renderer:
 
     rays = None
 
-    def __init__(
-        self, world: World, width: int, height: int, threads: int, options: dict[str, Any]
-    ) -> None:
+    def __init__(self, world: World, width: int, height: int, threads: int, options: dict[str, Any]) -> None:
         pyluxcore.Init(lambda message: None)
         self.size = width, height
         self.as_users, self.threads, self.edges = bool(options.get("as_users")), threads, world.edges

@@ -34,9 +34,7 @@ class Renderer:
 
     rays = None
 
-    def __init__(
-        self, world: World, width: int, height: int, threads: int, options: dict[str, Any]
-    ) -> None:
+    def __init__(self, world: World, width: int, height: int, threads: int, options: dict[str, Any]) -> None:
         _find_llvm()
         mi.set_variant(options.get("variant", "llvm_ad_rgb"))
         mi.set_log_level(mi.LogLevel.Error)
