@@ -136,7 +136,7 @@ def test_the_denoiser_is_guided_through_mirrors() -> None:
 
 def test_the_denoiser_is_guided_through_glass_along_the_estimators_paths() -> None:
     """Of a lamp of radiance 1, seen through a pane and mirrored in it: the picture itself."""
-    pane = meshes.box(8, 8, 0.5).moved(0, -4, -3)
+    pane = meshes.box(8, 8, 0.5).moved(z=-3)
     world = scene((pane, _core.Material("pane", "glass", (1, 1, 1), 1.5)), (card(-9, 9, -6), lamp(1)))
     view = camera((0, 0, 0), (0.5, 0.2, -1), fov=60)
     naive = Estimator("NaivePathtracer", {"rr_threshold": 0.0})
@@ -144,6 +144,17 @@ def test_the_denoiser_is_guided_through_glass_along_the_estimators_paths() -> No
     assert picture.std() > 0, "the pane reflects some"
     found = pass_over(world, view, seed=3)
     np.testing.assert_allclose(found.denoising_albedo(), picture, rtol=1e-4, atol=1e-5)
+
+
+def test_glass_does_not_dim_the_guide_by_compressing_radiance() -> None:
+    """Of a lamp inside of glass the picture sees 1 / 1.5^2 of the radiance, but nothing was absorbed."""
+    block = meshes.box(8, 8, 4).moved(z=-5)
+    world = scene((block, _core.Material("block", "glass", (1, 1, 1), 1.5)), (card(-3, 3, -4, 3), lamp(1)))
+    view = camera((0, 0, 0), (0, 0, -1), fov=5)
+    picture = SEEN.render(world, view, SPP, edges=2, seed=3).mean()
+    assert picture.min() > 0
+    found = pass_over(world, view, seed=3)
+    np.testing.assert_allclose(found.denoising_albedo(), picture * 1.5**2, rtol=1e-4)
 
 
 def test_a_pass_ends_when_its_progress_raises() -> None:

@@ -94,8 +94,9 @@ def test_guides_keep_detail() -> None:
     alone = rel_mse(denoise(image).image, albedo)
     random = np.random.default_rng(2)
     blurred = np.clip(albedo + random.normal(0, 0.02, albedo.shape), 0, 1).astype(np.float32)
-    for guide in (albedo.astype(np.float32), blurred):
-        assert rel_mse(denoise(image, guide, normal).image, albedo) < alone / 3
+    # That they are said to be clean, once they are, doubles what exact ones are worth.
+    for guide, gain in ((albedo.astype(np.float32), 15), (blurred, 3)):
+        assert rel_mse(denoise(image, guide, normal).image, albedo) < alone / gain
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, -1.0])
