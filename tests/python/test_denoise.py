@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 import sys
 from collections.abc import Callable
@@ -210,6 +211,8 @@ def test_the_command_writes_both(scene: Scene, run: Callable[[str], Run]) -> Non
         assert description(path) == f"denoised by {name()}, guided by albedo and normal: biased"
     # The film is the noisy one, and gives the same denoised image.
     np.testing.assert_array_equal(etendue.read_film("a.film.exr").image, film.image)
+    summary = json.loads(run("render lit.json -o d.png --denoise -q --json").out)
+    assert summary["outputs"] == ["d.png", "d.denoised.png"]
     before = Path("a.film.exr").read_bytes()
     assert run("denoise a.film.exr -o c.png -q") == Run(0, "", "")
     assert Path("c.png").read_bytes() == Path("a.denoised.png").read_bytes()

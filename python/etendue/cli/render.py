@@ -124,7 +124,7 @@ def _run(job: Job, interrupts: Interrupts) -> int:
     if denoised is not None:
         job.say(f"{denoised.attributes['denoised']} (biased): {', '.join(map(str, wanted.denoised))}")
     if job.as_json:
-        print(json.dumps(_summary(film, scene, paths)))
+        print(json.dumps(_summary(film, scene, [*paths, *(wanted.denoised if denoised else ())])))
     return interrupts.exit_code if interrupted else 0
 
 
