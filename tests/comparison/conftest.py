@@ -26,18 +26,23 @@ f 5 6 7 8
 MATERIALS = "newmtl floor\nKd 0.8 0.6 0.4\nnewmtl light\nKd 1 1 1\nKe 8 8 8\n"
 
 
-@pytest.fixture
-def lit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """lit.json in a new current folder: a lamp over a floor, 16 x 12 pixels."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("ETENDUE_CACHE", str(tmp_path / "cache"))
-    Path("lit.obj").write_text(MESH)
-    Path("lit.mtl").write_text(MATERIALS)
+def write_lit(folder: Path) -> Path:
+    """lit.json: a lamp over a floor, 16 x 12 pixels."""
+    (folder / "lit.obj").write_text(MESH)
+    (folder / "lit.mtl").write_text(MATERIALS)
     data: dict[str, Any] = {
         "camera": CAMERA,
         "framebuffer": {"res_w": 16, "res_h": 12, "sppx": 4},
         "scene": {"mesh_files": ["lit.obj"]},
     }
-    path = tmp_path / "lit.json"
+    path = folder / "lit.json"
     path.write_text(json.dumps(data))
     return path
+
+
+@pytest.fixture
+def lit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The scene file in a new current folder, with a cache of its own."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ETENDUE_CACHE", str(tmp_path / "cache"))
+    return write_lit(tmp_path)
