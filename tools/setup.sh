@@ -2,12 +2,16 @@
 #
 #   set_up run     what `etendue` needs: system packages, .venv, the package with its compiled core
 #   set_up compare the same, and what reports need
-#   set_up test    the same, and the tools of the tests
+#   set_up view    the same as run, and what a window needs
+#   set_up test    all of these, and the tools of the tests
 #   set_up slow    the same, and what the slow tests need besides
 #
 # A failure is one message on stderr and exit code 2; all that the steps print goes to $log.
 
 packages="python3 python3-venv python3-dev g++ cmake ninja-build libembree-dev libtbb-dev libglm-dev"
+# A window, and for its tests a screen where there is none.
+window="libgl1 libgl1-mesa-dri libx11-6 libxext6 libxcursor1 libxrandr2 libxinerama1 libxi6"
+screen=xvfb
 venv=$root/.venv
 log=$root/build/set-up.log
 
@@ -54,14 +58,20 @@ build_up() {
     case $1 in
         run) extras="" levels=run ;;
         compare) extras="" levels="run compare" ;;
-        test) extras="[dev]" levels="run compare test" ;;
-        slow) extras="[dev,judge,browser]" levels="run compare test slow" packages="$packages $(browser)" ;;
+        view) extras="[viewer]" levels="run view" packages="$packages $window" ;;
+        test) extras="[viewer,dev]" levels="run compare view test" packages="$packages $window $screen" ;;
+        slow)
+            extras="[viewer,dev,judge,browser]" levels="run compare view test slow"
+            packages="$packages $window $screen $(browser)"
+            ;;
     esac
     install_packages
     make_venv
     step "building Étendue (minutes the first time)" build ".$extras"
     # Apart from the build, because what is compiled here brings build tools of its own.
-    [ "$1" = run ] || step "installing what reports need" pip_install "etendue[compare]"
+    case $levels in
+        *compare*) step "installing what reports need" pip_install "etendue[compare]" ;;
+    esac
     for level in $levels; do
         echo "$sources $(readlink -f "$venv/bin/python")" >"$venv/.set-up-$level"
     done

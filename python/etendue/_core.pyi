@@ -441,6 +441,18 @@ class Renderer:
         renders. Raises ValueError for a stride that is not 1, 2, 4, 8 or 16.
         """
 
+    def pixel(self, x: int, y: int) -> tuple[list[float], list[float], int, int] | None:
+        """
+        (mean, variance of one sample, samples, invalid samples) of a pixel, also while another thread renders; mean and
+        variance have three channels. None outside of the image.
+        """
+
+    @property
+    def samples_done(self) -> int:
+        """
+        Pixels x samples, of those that the running or last `render` was asked for, that are there.
+        """
+
     def snapshot(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]]:
         """
         What `sum`, `sum_squares`, `half_sum`, `sample_count` and `invalid_per_pixel` give, of the same moment in each pixel,

@@ -1,4 +1,5 @@
 // What a viewer sees of a renderer while it renders.
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/tuple.h>
 
 #include "bindings/arrays.h"
@@ -74,6 +75,22 @@ std::tuple<Sums, Sums, Sums, Counts, Counts> snapshot(const Renderer& renderer) 
     return {sum, sum_squares, half_sum, count, invalid};
 }
 
+using Vector = std::array<double, 3>;
+
+/// Mean, variance of one sample, samples, and how many of them are invalid.
+std::optional<std::tuple<Vector, Vector, uint64_t, uint64_t>> pixel(const Renderer& renderer, uint32_t x,
+                                                                    uint32_t y) {
+    if (x >= renderer.film().width() || y >= renderer.film().height()) return std::nullopt;
+    const Pixel pixel = renderer.read(x, y);
+    const double n = static_cast<double>(pixel.count - pixel.invalid);
+    Vector mean{}, variance{};
+    for (int c = 0; c < 3; ++c) {
+        if (n > 0) mean[c] = pixel.sum[c] / n;
+        if (n > 1) variance[c] = std::max(pixel.sum_squares[c] - pixel.sum[c] * mean[c], 0.0) / (n - 1);
+    }
+    return std::tuple{mean, variance, pixel.count, pixel.invalid};
+}
+
 }  // namespace
 
 void bind_live(nb::module_& m) {
@@ -89,6 +106,13 @@ void bind_live(nb::module_& m) {
              "samples is as the nearest to its left and above that `render_coarse` gave one. May be called "
              "while another thread\n"
              "renders. Raises ValueError for a stride that is not 1, 2, 4, 8 or 16.")
+        .def("pixel", &pixel, nb::arg("x"), nb::arg("y"),
+             "(mean, variance of one sample, samples, invalid samples) of a pixel, also while another thread "
+             "renders; mean and\n"
+             "variance have three channels. None outside of the image.")
+        .def_prop_ro("samples_done", &Renderer::samples_done,
+                     "Pixels x samples, of those that the running or last `render` was asked for, that are "
+                     "there.")
         .def(
             "snapshot", &snapshot,
             "What `sum`, `sum_squares`, `half_sum`, `sample_count` and `invalid_per_pixel` give, of the same "

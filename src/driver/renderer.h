@@ -62,6 +62,11 @@ class Renderer {
             visit(tiles_[i], film_);
         }
     }
+    /// One pixel at such a moment.
+    Pixel read(uint32_t x, uint32_t y) const {
+        const std::lock_guard lock(tile_mutexes_[tiles_.index_of(x, y)]);
+        return film_.pixels()[size_t{y} * film_.width() + x];
+    }
     /// Goes on from another film of the same size, scene, settings and first sample. Throws
     /// std::invalid_argument for another size.
     void resume(Film film);

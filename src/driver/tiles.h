@@ -26,6 +26,7 @@ class Tiles {
         : width_(width), height_(height), columns_((width + SIDE - 1) / SIDE) {}
 
     uint32_t count() const { return columns_ * ((height_ + SIDE - 1) / SIDE); }
+    uint32_t index_of(uint32_t x, uint32_t y) const { return y / SIDE * columns_ + x / SIDE; }
     Tile operator[](uint32_t index) const {
         const uint32_t x = index % columns_ * SIDE, y = index / columns_ * SIDE;
         return {x, y, std::min(x + SIDE, width_), std::min(y + SIDE, height_)};

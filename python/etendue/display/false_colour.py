@@ -53,16 +53,22 @@ def picture(
     limits: values of the darkest and the lightest colour, by default those between which 98% of the values
     above 0 lie. Grey is where there is no number; below and above the limits, the last colours go on.
     """
-    low, high = limits or _limits(values)
+    limits = limits or limits_of(values)
+    return np.concatenate([coloured(values, limits), _scale(values.shape[0], *limits, title)], axis=1)
+
+
+def coloured(values: NDArray[np.float64], limits: tuple[float, float]) -> NDArray[np.uint8]:
+    """uint8 (..., 3): `values` in the colours of `picture`, without the scale."""
+    low, high = limits
     with np.errstate(divide="ignore", invalid="ignore"):
         position = (
             np.log(values / low) / math.log(high / low) if high > low else np.where(values < low, 0.0, 1.0)
         )
-    coloured = _coloured(np.where(np.isnan(values), np.nan, position))
-    return np.concatenate([coloured, _scale(values.shape[0], low, high, title)], axis=1)
+    return _coloured(np.where(np.isnan(values), np.nan, position))
 
 
-def _limits(values: NDArray[np.float64]) -> tuple[float, float]:
+def limits_of(values: NDArray[np.float64]) -> tuple[float, float]:
+    """The values between which 98% of those above 0 lie."""
     usable = values[np.isfinite(values) & (values > 0)]
     if usable.size == 0:
         return 1.0, 1.0

@@ -4,4 +4,4 @@ Nothing heavy is imported before a command needs it, so that `--help` and mistyp
 """
 
 # In the order of `etendue --help`.
-from . import render, compare, films, denoise, replay, information  # noqa: F401, I001
+from . import render, view, compare, films, denoise, replay, information  # noqa: F401, I001

@@ -1,0 +1,26 @@
+"""The live plot of the split view: each estimator's error over time."""
+
+from __future__ import annotations
+
+import numpy as np
+from imgui_bundle import imgui, implot
+
+from .viewer import Viewer
+
+
+def draw(viewer: Viewer) -> None:
+    """Draw the plot's window."""
+    imgui.set_next_window_size((460, 280), imgui.Cond_.first_use_ever)
+    if imgui.begin("Error over time")[0]:
+        flags = implot.AxisFlags_.auto_fit
+        if implot.begin_plot("##errors", (-1, -1)):
+            implot.setup_axes("seconds of rendering", "relative error", flags, flags)
+            implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
+            implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
+            for side, session in zip(("left", "right"), viewer.sessions, strict=False):
+                points, scene = session.errors, session.scene
+                if points and scene is not None:
+                    seconds, errors = np.array(points, np.float64).T.copy()
+                    implot.plot_line(f"{scene.config.algorithm} ({side})", seconds, errors)
+            implot.end_plot()
+    imgui.end()

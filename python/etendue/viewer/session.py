@@ -1,0 +1,375 @@
+"""A render that goes on behind a window, and pictures of it. It knows no window, and no window waits for it.
+
+`show` says what is wanted and returns at once. One thread renders it, another develops pictures, and whoever
+shows them looks at `status` and `picture` as often as he likes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import partial
+from typing import Any
+
+from .. import _core
+from ..config import Config
+from ..errors import EtendueError
+from ..film import Film
+from ..film.progressive import grown
+from ..scene import Scene
+from .errors import relative_error
+from .pictures import MOST_COARSE, Look, Picture, Source, develop
+from .scenes import Scenes
+
+# Shortest time between two pictures, and how long after one as many times its cost.
+_INTERVAL, _DUTY = 0.1, 4.0
+_ERROR_INTERVAL = 1.0
+# A first pass may take this long.
+_FIRST = 0.04
+_NICE = 5
+
+
+class State(Enum):
+    """What a session is doing."""
+
+    LOADING = "loading"
+    RENDERING = "rendering"
+    PAUSED = "paused"
+    ABORTED = "aborted"
+    DONE = "done"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Status:
+    """How far a render is. `seconds` is time spent rendering; rates are means over it.
+
+    error: estimate of the relative error; None: not known yet. eta: seconds until it is done.
+    problem: why there is nothing to render.
+    """
+
+    state: State = State.LOADING
+    spp: float = 0.0
+    goal: int = 0
+    samples_per_second: float = 0.0
+    rays_per_second: float = 0.0
+    error: float | None = None
+    seconds: float = 0.0
+    eta: float | None = None
+    problem: str | None = None
+
+    @property
+    def percent(self) -> int:
+        """100 when all is done, and not before."""
+        if self.state is State.DONE:
+            return 100
+        return min(math.floor(100 * self.spp / self.goal), 99) if self.goal else 0
+
+
+@dataclass
+class _Live:
+    """A scene on its way to a film. stride: of the last finished pass; 0: none yet."""
+
+    scene: Scene
+    renderer: _core.Renderer
+    film: Film
+    stride: int = 0
+    seconds: float = 0.0
+    since: float | None = None
+    errors: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def clock(self) -> float:
+        """Seconds spent rendering."""
+        since = self.since
+        return self.seconds + (0 if since is None else time.monotonic() - since)
+
+    def step(self, work: Callable[[], bool]) -> bool:
+        self.since = time.monotonic()
+        try:
+            return work()
+        finally:
+            self.seconds, self.since = self.clock, None
+
+
+def _is_same(one: Config, other: Config) -> bool:
+    return one.data == other.data and one.path == other.path
+
+
+def _of_samples(config: Config) -> dict[str, Any]:
+    """What decides what a sample is, and not how many there are and how they are shown."""
+    found = config.model_dump()
+    for key in ("beauty_render", "error_eps"):
+        del found[key]
+    for key in ("sppx", "exposure"):
+        del found["framebuffer"][key]
+    return found | {"folder": config.folder}
+
+
+class Session:
+    """A live render. All methods may be called from the window's thread, and none of them waits for long."""
+
+    def __init__(self, scenes: Scenes, threads: int = 0) -> None:
+        self._scenes = scenes
+        self._threads = threads
+        self._changed = threading.Condition()
+        self._config: Config | None = None
+        self._version = 0
+        self._fresh = 0
+        self._state = State.LOADING
+        self._problem: str | None = None
+        self._paused = self._aborted = self._closed = False
+        self._live: _Live | None = None
+        self._look = Look()
+        self._undeveloped = False
+        self._picture: Picture | None = None
+        self._crash: BaseException | None = None
+        self._sample_seconds = math.inf
+        self._workers = [
+            threading.Thread(target=self._guarded, args=(work,), name=f"etendue-{name}", daemon=True)
+            for name, work in (("render", self._render_forever), ("develop", self._develop_forever))
+        ]
+        for worker in self._workers:
+            worker.start()
+
+    # What a window asks for.
+
+    def show(self, config: Config, restart: bool = False) -> None:
+        """Render this config from now on; where only more samples are asked for, what is there is kept."""
+        with self._changed:
+            if self._config is not None and _is_same(config, self._config) and not restart:
+                return
+            self._config = config
+            self._version += 1
+            if restart:
+                self._fresh = self._version
+            self._paused = self._aborted = False
+            self._interrupt()
+
+    def restart(self, threads: int | None = None) -> None:
+        """Render the same again, from the first sample on, perhaps by another number of threads."""
+        if threads is not None:
+            self._threads = threads
+        if self._config is not None:
+            self.show(self._config, restart=True)
+
+    def pause(self, paused: bool = True) -> None:
+        """Stop, or go on."""
+        with self._changed:
+            if self._state in (State.RENDERING, State.PAUSED):
+                self._paused = paused
+                self._state = State.PAUSED if paused else State.RENDERING
+                self._interrupt()
+
+    def abort(self) -> None:
+        """Stop for good, with what is there."""
+        with self._changed:
+            if self._state in (State.RENDERING, State.PAUSED):
+                self._version += 1
+                self._aborted = True
+                self._state = State.ABORTED
+                self._interrupt()
+
+    def look(self, look: Look) -> None:
+        """Show the render in another way."""
+        with self._changed:
+            if look != self._look:
+                self._look = look
+                self._undeveloped = True
+                self._changed.notify_all()
+
+    @property
+    def picture(self) -> Picture | None:
+        """The newest picture."""
+        return self._picture
+
+    @property
+    def scene(self) -> Scene | None:
+        """The scene of what is shown."""
+        live = self._live
+        return None if live is None else live.scene
+
+    @property
+    def renderer(self) -> _core.Renderer | None:
+        """The renderer of what is shown."""
+        live = self._live
+        return None if live is None else live.renderer
+
+    @property
+    def errors(self) -> list[tuple[float, float]]:
+        """Estimates of the relative error so far, with the seconds of rendering after which each was made."""
+        live = self._live
+        return [] if live is None else list(live.errors)
+
+    def film(self) -> Film | None:
+        """The film as it is now; None: nothing is rendered yet."""
+        live = self._live
+        if live is None:
+            return None
+        film = grown(live.film, live.film.goal, live.renderer)
+        film.seconds = live.clock
+        return film
+
+    @property
+    def status(self) -> Status:
+        """How far it is. Raises what went wrong where it should not."""
+        if self._crash is not None:
+            raise self._crash
+        live = self._live
+        if live is None:
+            return Status(self._state, problem=self._problem)
+        framebuffer = live.scene.config.framebuffer
+        pixels, seconds = framebuffer.res_w * framebuffer.res_h, live.clock
+        samples = live.renderer.samples_done
+        missing = pixels * framebuffer.sppx - samples
+        rate = samples / seconds if seconds > 0 else 0.0
+        return Status(
+            self._state,
+            samples / pixels,
+            framebuffer.sppx,
+            rate,
+            live.renderer.rays / seconds if seconds > 0 else 0.0,
+            live.errors[-1][1] if live.errors else None,
+            seconds,
+            missing / rate if rate > 0 and self._state is State.RENDERING else None,
+            self._problem,
+        )
+
+    def close(self) -> None:
+        """End the threads; returns once they have."""
+        with self._changed:
+            self._closed = True
+            self._interrupt()
+        for worker in self._workers:
+            worker.join()
+
+    def _interrupt(self) -> None:
+        """Ends the running pass, unless it is the first: however fast changes come, each shows something."""
+        if self._live is not None and self._live.stride:
+            self._live.renderer.cancel()
+        self._changed.notify_all()
+
+    # The render's thread.
+
+    def _guarded(self, work: Callable[[], None]) -> None:
+        # The window comes before the picture: threads of the render are started by this one, and inherit this.
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
+        try:
+            work()
+        except BaseException as error:
+            self._crash = error
+
+    def _render_forever(self) -> None:
+        done = 0
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._closed or self._version != done)  # noqa: B023
+                if self._closed:
+                    return
+                version, config, aborted = self._version, self._config, self._aborted
+            if config is not None and not aborted:
+                try:
+                    self._render(version, config)
+                except (EtendueError, MemoryError) as error:
+                    self._finish(version, State.FAILED, str(error) or "not enough memory")
+            done = version
+
+    def _finish(self, version: int, state: State, problem: str | None = None) -> None:
+        with self._changed:
+            if version == self._version:
+                self._state, self._problem = state, problem
+            self._undeveloped = True
+            self._changed.notify_all()
+
+    def _render(self, version: int, config: Config) -> None:
+        live = self._live
+        if live is not None and self._goes_on(live, version, config):
+            live.scene = dataclasses.replace(live.scene, config=config)
+            live.film = dataclasses.replace(live.film, goal=(0, config.framebuffer.sppx))
+        else:
+            self._finish(version, State.LOADING)
+            scene = self._scenes.get(config)
+            live = _Live(scene, scene.renderer(self._threads), scene.empty_film())
+            stride = self._first_stride(config)
+            before = time.monotonic()
+            live.step(lambda: live.renderer.render_coarse(stride))
+            self._sample_seconds = (time.monotonic() - before) / max(live.renderer.samples_done, 1)
+            with self._changed:
+                self._live = live
+                self._advanced(live, stride)
+        self._finish(version, State.RENDERING)
+        while live.stride > 1:
+            stride = live.stride // 2
+            if stride > 1 and not self._step(version, live, lambda: live.renderer.render_coarse(stride)):  # noqa: B023
+                return
+            if stride == 1 and not self._step(version, live, lambda: live.renderer.render(1)):
+                return
+            with self._changed:
+                self._advanced(live, stride)
+        if self._step(version, live, lambda: live.renderer.render(config.framebuffer.sppx)):
+            self._finish(version, State.DONE)
+
+    def _goes_on(self, live: _Live, version: int, config: Config) -> bool:
+        """Whether what is there is part of what is wanted."""
+        if self._fresh == version or _of_samples(live.scene.config) != _of_samples(config):
+            return False
+        return config.framebuffer.sppx * live.renderer.sample_count().size >= live.renderer.samples_done
+
+    def _first_stride(self, config: Config) -> int:
+        pixels = config.framebuffer.res_w * config.framebuffer.res_h
+        stride = 2
+        while stride < MOST_COARSE and self._sample_seconds * pixels / stride**2 > _FIRST:
+            stride *= 2
+        return stride
+
+    def _advanced(self, live: _Live, stride: int) -> None:
+        live.stride = stride
+        self._undeveloped = True
+        self._changed.notify_all()
+
+    def _step(self, version: int, live: _Live, work: Callable[[], bool]) -> bool:
+        """Does a part of the render, through all pauses. False where something else is wanted."""
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._closed or self._version != version or not self._paused)
+                if self._closed or self._version != version:
+                    return False
+            if live.step(work):
+                return True
+
+    # The thread that develops pictures.
+
+    def _develop_forever(self) -> None:
+        number, wait = 0, _INTERVAL
+        next_error = 0.0
+        while True:
+            with self._changed:
+                rendering = self._state is State.RENDERING
+                self._changed.wait_for(lambda: self._closed or self._undeveloped, wait if rendering else None)
+                if self._closed:
+                    return
+                live, look, state, is_new = self._live, self._look, self._state, self._undeveloped
+                self._undeveloped = False
+            if live is None or not live.stride:
+                continue
+            start = time.monotonic()
+            # Between two passes, with what the finer one has so far.
+            stride = live.stride if is_new else max(live.stride // 2, 1)
+            source = Source(live.renderer, stride, partial(grown, live.film, live.film.goal, live.renderer))
+            number += 1
+            self._picture = develop(source, look, number)
+            cost = time.monotonic() - start
+            if live.stride == 1 and (time.monotonic() >= next_error or state is State.DONE):
+                seconds = live.clock
+                error = relative_error(source.film())
+                if error is not None:
+                    live.errors.append((seconds, error))
+                took = time.monotonic() - start
+                next_error = time.monotonic() + max(_ERROR_INTERVAL, _DUTY * took)
+            wait = max(_INTERVAL, _DUTY * cost)
