@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import _core
+from .. import _core, outputs
 from ..config import read_config
 from ..config.overrides import Override
 from ..errors import EtendueError
@@ -229,7 +229,8 @@ class Viewer:
     # Files.
 
     def save_film(self, path: Path, write: Callable[[Film, Path], object]) -> None:
-        """Writes the render as it is now, while the window goes on."""
+        """Writes the render as it is now, while the window goes on; raises EtendueError where there is none."""
+        outputs.check([path])
         film = self.session.film()
         if film is None:
             raise EtendueError("there is no render to save yet")
