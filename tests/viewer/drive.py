@@ -97,6 +97,7 @@ def drive(viewer: Viewer, steps: Callable[[Hand], None]) -> None:
         io = test_engine.get_io(engine)
         io.config_watchdog_kill_test = io.config_watchdog_warning = math.inf
         io.config_log_to_tty = True
+        io.config_mouse_draw_cursor = False
         test = test_engine.register_test(engine, "viewer", "steps")
         test.test_func = run
         test_engine.queue_test(engine, test)

@@ -15,6 +15,7 @@ from etendue import _core, read_film
 from etendue.config.located_json import Loc
 from etendue.config.schema import Schema
 from etendue.models import SCENES
+from etendue.viewer.pages.algorithms import label_of
 from etendue.viewer.pages.camera import FIELDS
 from etendue.viewer.pages.settings import LABELS
 from etendue.viewer.viewer import Viewer
@@ -98,7 +99,7 @@ def move_all(hand: Hand) -> None:
         hand.click(hand.place("Algorithms", info.name))
         assert document.config.algorithm == info.name
         for parameter in info.parameters:
-            once("Algorithms", parameter.name, (parameter.name,))
+            once("Algorithms", label_of(parameter.name), (parameter.name,))
     hand.click(hand.place("Algorithms", "Pathtracer"))
     moved.add(("algorithm",))
     known = [(key,) for key in document.keys_of() if key not in ("framebuffer", "camera", "scene")]

@@ -88,4 +88,7 @@ def draw_over(viewer: Viewer, corner: tuple[float, float], scale: float) -> None
                 lines.add_circle_filled(here, 3, IM_COL32(20, 20, 20, alpha))
                 lines.add_circle(here, 3, IM_COL32(255, 255, 255, alpha))
             before = here
+    x, y = (corner[axis] + (viewer.pixel[axis] + 0.5) * scale for axis in (0, 1))
+    for ring, width in ((IM_COL32(0, 0, 0, 200), 4.0), (IM_COL32(255, 255, 255, 255), 1.5)):
+        lines.add_circle((x, y), 7, ring, 0, width)
     lines.pop_clip_rect()

@@ -17,6 +17,8 @@ from enum import Enum
 from functools import partial
 from typing import Any
 
+from numpy.typing import NDArray
+
 from .. import _core
 from ..config import Config
 from ..errors import EtendueError
@@ -24,7 +26,7 @@ from ..film import Film
 from ..film.progressive import grown
 from ..scene import Scene
 from .errors import relative_error
-from .pictures import MOST_COARSE, Look, Picture, Source, develop
+from .pictures import MOST_COARSE, Look, Picture, Source, Stale, develop
 from .scenes import Scenes
 
 # Shortest time between two pictures, and how long after one as many times its cost.
@@ -83,6 +85,7 @@ class _Live:
     seconds: float = 0.0
     since: float | None = None
     errors: list[tuple[float, float]] = field(default_factory=list)
+    surfaces: dict[str, NDArray[Any]] = field(default_factory=dict)
 
     @property
     def clock(self) -> float:
@@ -129,6 +132,7 @@ class Session:
         self._look = Look()
         self._undeveloped = False
         self._picture: Picture | None = None
+        self._trouble: str | None = None
         self._crash: BaseException | None = None
         self._sample_seconds = math.inf
         self._workers = [
@@ -188,6 +192,11 @@ class Session:
     def picture(self) -> Picture | None:
         """The newest picture."""
         return self._picture
+
+    def take_trouble(self) -> str | None:
+        """Why the last picture could not be made as it was to be, told once."""
+        trouble, self._trouble = self._trouble, None
+        return trouble
 
     @property
     def scene(self) -> Scene | None:
@@ -361,9 +370,14 @@ class Session:
             start = time.monotonic()
             # Between two passes, with what the finer one has so far.
             stride = live.stride if is_new else max(live.stride // 2, 1)
-            source = Source(live.renderer, stride, partial(grown, live.film, live.film.goal, live.renderer))
+            source = self._source(live, look, stride)
             number += 1
-            self._picture = develop(source, look, number)
+            try:
+                self._picture = develop(source, look, number)
+            except Stale:
+                continue
+            except EtendueError as refused:
+                self._trouble = str(refused)
             cost = time.monotonic() - start
             if live.stride == 1 and (time.monotonic() >= next_error or state is State.DONE):
                 seconds = live.clock
@@ -373,3 +387,11 @@ class Session:
                 took = time.monotonic() - start
                 next_error = time.monotonic() + max(_ERROR_INTERVAL, _DUTY * took)
             wait = max(_INTERVAL, _DUTY * cost)
+
+    def _source(self, live: _Live, look: Look, stride: int) -> Source:
+        def go_on(_: float) -> None:
+            if self._closed or self._live is not live or self._look != look:
+                raise Stale
+
+        film = partial(grown, live.film, live.film.goal, live.renderer)
+        return Source(live.scene, live.renderer, stride, film, live.surfaces, go_on)

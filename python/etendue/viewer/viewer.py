@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core, outputs
+from .. import denoise as denoiser
 from ..config import read_config
 from ..config.overrides import Override
 from ..errors import EtendueError
@@ -87,6 +88,17 @@ class Viewer:
         if self.split is not None:
             self.split.session.show(self.split.config(self.document.config))
             self.split.session.look(self.look)
+        for session in self.sessions:
+            trouble = session.take_trouble()
+            if trouble is not None:
+                self.say(trouble, failed=True)
+                self.look = dataclasses.replace(self.look, denoised=False)
+
+    def denoise(self, wanted: bool) -> None:
+        """Shows the image denoised, or as it is; raises EtendueError where the denoiser is not installed."""
+        if wanted:
+            denoiser.require()
+        self.look = dataclasses.replace(self.look, denoised=wanted)
 
     def attempt(self, action: Callable[[], object]) -> bool:
         """Does something that may not be possible, and tells why it is not. Whether it was."""

@@ -10,6 +10,7 @@ from ... import _core
 from ..split import other_than
 from ..viewer import Viewer
 from ..widgets import control, field, tooltip
+from .settings import LABELS
 
 
 def draw(viewer: Viewer) -> None:
@@ -21,7 +22,7 @@ def draw(viewer: Viewer) -> None:
         tooltip(info.summary)
     imgui.separator_text(document.config.algorithm)
     for parameter in parameters_of(document.config.algorithm):
-        field(document, (parameter.name,), parameter.name)
+        field(document, (parameter.name,), label_of(parameter.name))
     imgui.separator_text("Split view")
     imgui.text_wrapped("A second estimator of the same scene, right of a line that can be dragged.")
     changed, _ = imgui.checkbox("Split view", viewer.split is not None)
@@ -29,6 +30,11 @@ def draw(viewer: Viewer) -> None:
         viewer.toggle_split()
     if viewer.split is not None:
         _draw_right(viewer)
+
+
+def label_of(parameter: str) -> str:
+    """What a parameter is called on the pages."""
+    return LABELS.get((parameter,), parameter)
 
 
 def parameters_of(algorithm: str) -> list[Any]:
@@ -48,7 +54,7 @@ def _draw_right(viewer: Viewer) -> None:
     for parameter in parameters_of(algorithm):
         node = document.schema((parameter.name,))
         value = split.parameters.get(parameter.name, document.value((parameter.name,)))
-        changed, value = control(parameter.name, node, value)
+        changed, value = control(label_of(parameter.name), node, value)
         if changed:
             split.parameters[parameter.name] = value
     imgui.pop_id()

@@ -25,6 +25,10 @@ def draw(viewer: Viewer) -> None:
     changed, view = control("tone mapping", node, viewer.look.view, list(VIEWS))
     if changed:
         viewer.look = dataclasses.replace(viewer.look, view=view)
+    changed, denoised = imgui.checkbox("Denoise", viewer.look.denoised)
+    tooltip("Show the image denoised, which is biased. Files are saved as they are rendered.")
+    if changed:
+        viewer.denoise(denoised)
     imgui.separator()
     paused = viewer.session.status.state is State.PAUSED
     buttons(
