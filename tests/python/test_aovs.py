@@ -14,6 +14,7 @@ import pytest
 
 import etendue
 from etendue import EtendueError, Film, Scene, cli
+from etendue.cli import memory
 from etendue.film.aovs import AOVS
 
 CONTRIBUTIONS = ("direct", "indirect", "bsdf_sampling", "light_sampling")
@@ -221,6 +222,20 @@ def test_the_command_refuses(run: Callable[[str], Run], options: str, message: s
     assert done.code == 2
     assert done.err.startswith(message)
     assert sorted(Path().iterdir()) == before
+
+
+def test_memory_for_layers_is_asked_for_before_rendering(
+    run: Callable[[str], Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pixels = 8 * 6
+    enough = memory.of_image(etendue.read_config("lit.json").framebuffer)
+    monkeypatch.setattr(memory, "of_machine", lambda: enough + 100 * pixels)
+    assert run("render lit.json -o a.exr --aov sample_count -q").code == 0
+    for aov in ("depth", "direct"):
+        done = run(f"render lit.json -o b.exr --aov {aov} -q")
+        assert done.code == 2
+        assert "needs" in done.err
+    assert not Path("b.exr").exists()
 
 
 def test_an_interrupted_command_tells_what_is_missing(

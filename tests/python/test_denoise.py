@@ -262,3 +262,30 @@ def test_ctrl_c_keeps_the_noisy_image(run: Callable[[str], Run], monkeypatch: py
     assert "interrupted before the denoised image\n" in done.err
     assert not Path("a.denoised.exr").exists()
     assert oiio.ImageInput.open("a.exr").spec().channelnames == ("R", "G", "B", "depth.Z")
+
+
+def test_a_failure_of_the_denoiser_loses_nothing(
+    run: Callable[[str], Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(*_: Any) -> None:
+        raise EtendueError("Open Image Denoise failed: out of memory")
+
+    monkeypatch.setattr(Scene, "denoise", failing)
+    done = run("render lit.json --aov depth -o a.exr --film a.film.exr --denoise")
+    assert done.code == 2
+    assert done.err.endswith(
+        "the denoised image could not be made: Open Image Denoise failed: out of memory\n"
+    )
+    assert oiio.ImageInput.open("a.exr").spec().channelnames == ("R", "G", "B", "depth.Z")
+    assert etendue.read_film("a.film.exr").complete
+
+
+def test_the_film_is_safe_before_anything_else_is_made(
+    run: Callable[[str], Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def killed(*_: Any) -> None:
+        raise SystemExit(9)
+
+    monkeypatch.setattr(Scene, "with_aovs", killed)
+    assert run("render lit.json --aov depth -o a.exr --film a.film.exr").code == 9
+    assert etendue.read_film("a.film.exr").complete

@@ -31,6 +31,11 @@ class Wanted(NamedTuple):
         return kept_apart + surfaces + 24 * len(self.names) + (96 if self.denoised else 0)
 
     @property
+    def takes_time(self) -> bool:
+        """Whether there is something to do after the render."""
+        return bool(self.names or self.denoised)
+
+    @property
     def kept_apart(self) -> tuple[str, ...]:
         """The AOVs that the render itself must see to."""
         return aovs.from_source(self.names, "contributions")
@@ -58,11 +63,12 @@ def denoised_path(image: Path) -> Path:
 
 
 class Made(NamedTuple):
-    """The film with its layers, the denoised one, and what Ctrl-C left out."""
+    """The film with its layers, the denoised one, what Ctrl-C left out, and what failed: the film is to be saved."""
 
     film: Film
     denoised: Film | None = None
     left_out: str | None = None
+    problem: str | None = None
 
 
 def made(
@@ -87,6 +93,9 @@ def made(
             denoised = scene.denoise(known, threads, report, warnings)
     except KeyboardInterrupt:
         return Made(film, None, " and ".join(left_out))
+    except (EtendueError, MemoryError) as error:
+        reason = str(error) or "not enough memory"
+        return Made(film, None, None, f"{' and '.join(left_out)} could not be made: {reason}")
     for warning in warnings:
         say(f"warning: {warning}")
     return Made(film, denoised)

@@ -112,7 +112,10 @@ def _run(job: Job, interrupts: Interrupts) -> int:
     if film is None:
         job.say("interrupted before the first samples; nothing was written")
         return interrupts.exit_code
-    film, denoised, left_out = beside.made(scene, film, wanted, job.threads, job.say, job.quiet)
+    if job.film_path is not None and wanted.takes_time:
+        # Before what follows can be killed. If it fails, so will the writing at the end, and tell.
+        resuming.saved(film, job.film_path, compressed=False)
+    film, denoised, left_out, problem = beside.made(scene, film, wanted, job.threads, job.say, job.quiet)
     with interrupts.shielded():
         _save(film, paths, job.film_path, denoised, wanted.denoised)
     stopped = film.interrupted or interrupts.by_signal
@@ -123,6 +126,8 @@ def _run(job: Job, interrupts: Interrupts) -> int:
         job.say(f"interrupted before {left_out}")
     if denoised is not None:
         job.say(f"{denoised.attributes['denoised']} (biased): {', '.join(map(str, wanted.denoised))}")
+    if problem is not None:
+        raise EtendueError(problem)
     if job.as_json:
         print(json.dumps(_summary(film, scene, [*paths, *(wanted.denoised if denoised else ())])))
     return interrupts.exit_code if interrupted else 0
