@@ -12,7 +12,7 @@ import etendue
 from etendue import _core, cli
 from etendue.errors import EtendueError
 
-from .conftest import WriteScene
+from ..conftest import WriteScene
 
 SVG = "{http://www.w3.org/2000/svg}"
 
