@@ -368,6 +368,13 @@ class Renderer:
         Returns whether all samples were taken.
         """
 
+    def render_until(self, error_bound: float, progress: object | None = None, time_limit: float | None = None) -> bool:
+        """
+        A beauty render: gives every pixel 16 samples, then more to the worst tiles, until `error` is within the bound.
+        The other arguments are those of `render`, but that the fraction of progress is a guess. Returns whether the bound
+        is kept. How many samples a pixel has in the end depends on the samples alone.
+        """
+
     def cancel(self) -> None:
         """Makes a running render return, from another thread."""
 
@@ -383,7 +390,10 @@ class Renderer:
         """float64 (height, width, 3): sum of their squares."""
 
     def half_sum(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))]:
-        """float64 (height, width, 3): sum of the valid samples of even index."""
+        """
+        float64 (height, width, 3): sum of the valid samples of one half, of those whose index is in the first half of an
+        octave [2^k, 2^(k + 1)), or of the first 16.
+        """
 
     def sample_count(self) -> Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]:
         """uint64 (height, width): samples taken."""
@@ -391,7 +401,10 @@ class Renderer:
     def invalid_per_pixel(self) -> Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]:
         """uint64 (height, width): of those, how many are not in the sums."""
 
-    def resume(self, sum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], sum_squares: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], half_sum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], sample_count: Annotated[NDArray[numpy.uint64], dict(shape=(None, None), order='C', device='cpu', writable=False)], invalid_per_pixel: Annotated[NDArray[numpy.uint64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None:
+    def half_count(self) -> Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]:
+        """uint64 (height, width): samples in half_sum."""
+
+    def resume(self, sum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], sum_squares: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], half_sum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order='C', device='cpu', writable=False)], sample_count: Annotated[NDArray[numpy.uint64], dict(shape=(None, None), order='C', device='cpu', writable=False)], invalid_per_pixel: Annotated[NDArray[numpy.uint64], dict(shape=(None, None), order='C', device='cpu', writable=False)], half_count: Annotated[NDArray[numpy.uint64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None:
         """
         Goes on from these, as another renderer of the same scene, settings and first sample gave them. Raises
         ValueError for another size.
@@ -419,6 +432,13 @@ class Renderer:
 
     @property
     def threads(self) -> int: ...
+
+    @property
+    def error(self) -> float:
+        """
+        Error of the film as the running or last render last saw it (see film_error); infinite where it cannot
+        be told.
+        """
 
     @property
     def invalid_count(self) -> int:
@@ -453,11 +473,18 @@ class Renderer:
         Pixels x samples, of those that the running or last `render` was asked for, that are there.
         """
 
-    def snapshot(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]]:
+    def snapshot(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))], Annotated[NDArray[numpy.uint64], dict(shape=(None, None))]]:
         """
-        What `sum`, `sum_squares`, `half_sum`, `sample_count` and `invalid_per_pixel` give, of the same moment in each pixel,
-        also while another thread renders.
+        What `sum`, `sum_squares`, `half_sum`, `sample_count`, `invalid_per_pixel` and `half_count` give, of the same moment
+        in each pixel, also while another thread renders.
         """
+
+def film_error(sum: NDArray[numpy.float64], sum_squares: NDArray[numpy.float64], half_sum: NDArray[numpy.float64], sample_count: NDArray[numpy.uint64], invalid_per_pixel: NDArray[numpy.uint64], half_count: NDArray[numpy.uint64]) -> tuple[float, float, float, NDArray[numpy.float64]]:
+    """
+    The error of a film, the lower and the upper end of its 95% confidence interval, and the errors of its tiles of
+    16 x 16 pixels, (rows, columns). A tile's is relative: the root mean square of its pixels' and channels' standard
+    errors, estimated from the halves, over its mean radiance; the film's is what 95% of the tiles do not exceed.
+    """
 
 class Contribution:
     """Light that a path brought to the camera."""

@@ -49,11 +49,12 @@ Picture picture(const Renderer& renderer, uint32_t stride) {
     return out;
 }
 
-std::tuple<Sums, Sums, Sums, Counts, Counts> snapshot(const Renderer& renderer) {
+std::tuple<Sums, Sums, Sums, Counts, Counts, Counts> snapshot(const Renderer& renderer) {
     const size_t height = renderer.film().height(), width = renderer.film().width();
     auto sum = new_array<Sums>({height, width, 3}), sum_squares = new_array<Sums>({height, width, 3}),
          half_sum = new_array<Sums>({height, width, 3});
-    auto count = new_array<Counts>({height, width}), invalid = new_array<Counts>({height, width});
+    auto count = new_array<Counts>({height, width}), invalid = new_array<Counts>({height, width}),
+         half_count = new_array<Counts>({height, width});
     {
         const nb::gil_scoped_release release;
         renderer.read([&](const Tile& tile, const Film& film) {
@@ -68,11 +69,12 @@ std::tuple<Sums, Sums, Sums, Counts, Counts> snapshot(const Renderer& renderer) 
                     }
                     count.data()[i] = pixel.count;
                     invalid.data()[i] = pixel.invalid;
+                    half_count.data()[i] = pixel.half_count;
                 }
             }
         });
     }
-    return {sum, sum_squares, half_sum, count, invalid};
+    return {sum, sum_squares, half_sum, count, invalid, half_count};
 }
 
 using Vector = std::array<double, 3>;
@@ -113,11 +115,11 @@ void bind_live(nb::module_& m) {
         .def_prop_ro("samples_done", &Renderer::samples_done,
                      "Pixels x samples, of those that the running or last `render` was asked for, that are "
                      "there.")
-        .def(
-            "snapshot", &snapshot,
-            "What `sum`, `sum_squares`, `half_sum`, `sample_count` and `invalid_per_pixel` give, of the same "
-            "moment in each pixel,\n"
-            "also while another thread renders.");
+        .def("snapshot", &snapshot,
+             "What `sum`, `sum_squares`, `half_sum`, `sample_count`, `invalid_per_pixel` and `half_count` "
+             "give, "
+             "of the same moment\n"
+             "in each pixel, also while another thread renders.");
 }
 
 }  // namespace etendue

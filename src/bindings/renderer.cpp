@@ -6,7 +6,7 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/variant.h>
 
-#include "bindings/arrays.h"
+#include "bindings/film_arrays.h"
 #include "bindings/watch.h"
 #include "driver/renderer.h"
 
@@ -38,6 +38,24 @@ bool render(Renderer& renderer, uint64_t samples, const nb::object& progress,
                        const double done = static_cast<double>(renderer.samples_done()) / wanted;
                        progress(done, done * static_cast<double>(samples));
                    });
+}
+
+bool render_until(Renderer& renderer, double error_bound, const nb::object& progress,
+                  std::optional<double> time_limit) {
+    const double pixels = static_cast<double>(renderer.film().pixels().size());
+    const auto report = [&](bool complete) {
+        if (progress.is_none()) return;
+        const double done = static_cast<double>(renderer.samples_done());
+        const double expected = renderer.samples_expected();
+        // What is expected is a guess, and being there is none.
+        const double fraction = complete ? 1 : expected > 0 ? std::min(done / expected, 0.999) : 0;
+        progress(fraction, done / pixels);
+    };
+    const bool complete =
+        watched([&] { return renderer.render_until(error_bound, time_limit.value_or(INFINITE)); },
+                [&] { renderer.cancel(); }, [&] { report(false); });
+    if (complete) report(true);
+    return complete;
 }
 
 /// Calls put(index, pixel) for all pixels, whether or not another thread renders them.
@@ -78,29 +96,22 @@ Out<uint64_t, nb::shape<-1, -1>> counts(const Renderer& renderer, const Value& v
     return out;
 }
 
-using Sums = In<double, nb::shape<-1, -1, 3>>;
-using Counts = In<uint64_t, nb::shape<-1, -1>>;
-
 void resume(Renderer& renderer, const Sums& sum, const Sums& sum_squares, const Sums& half_sum,
-            const Counts& sample_count, const Counts& invalid_samples) {
-    const size_t height = sum.shape(0), width = sum.shape(1);
-    for (const Sums* sums : {&sum_squares, &half_sum}) {
-        require_same_length(sums->shape(0), height, "all arrays");
-        require_same_length(sums->shape(1), width, "all arrays");
-    }
-    for (const Counts* counts : {&sample_count, &invalid_samples}) {
-        require_same_length(counts->shape(0), height, "all arrays");
-        require_same_length(counts->shape(1), width, "all arrays");
-    }
-    Film film(width, height);
-    const auto at = [](const Sums& sums, size_t i) {
-        return glm::dvec3(sums.data()[3 * i], sums.data()[3 * i + 1], sums.data()[3 * i + 2]);
-    };
-    for (size_t i = 0; i < width * height; ++i) {
-        film.at(i % width, i / width) = {at(sum, i), at(sum_squares, i), at(half_sum, i),
-                                         sample_count.data()[i], invalid_samples.data()[i]};
-    }
-    renderer.resume(std::move(film));
+            const Counts& sample_count, const Counts& invalid_per_pixel, const Counts& half_count) {
+    renderer.resume(film_of(sum, sum_squares, half_sum, sample_count, invalid_per_pixel, half_count));
+}
+
+nb::tuple film_error_of(const Sums& sum, const Sums& sum_squares, const Sums& half_sum,
+                        const Counts& sample_count, const Counts& invalid_per_pixel,
+                        const Counts& half_count) {
+    const Film film = film_of(sum, sum_squares, half_sum, sample_count, invalid_per_pixel, half_count);
+    TileWorkers workers(thread_count(0));
+    const std::vector<TileError> tiles = tile_errors(film, workers);
+    const FilmError whole = film_error(tiles);
+    const size_t columns = (film.width() + Tiles::SIDE - 1) / Tiles::SIDE;
+    auto errors = new_array<Out<double, nb::shape<-1, -1>>>({tiles.size() / columns, columns});
+    std::ranges::transform(tiles, errors.data(), &TileError::error);
+    return nb::make_tuple(whole.error, whole.low, whole.high, errors);
 }
 
 // Doubles in the order of memory: technique, part, colour.
@@ -147,6 +158,13 @@ void bind_renderer(nb::module_& m) {
              "the render within 100 ms and is raised. time_limit: seconds, after the first sample of each "
              "pixel.\n"
              "Returns whether all samples were taken.")
+        .def("render_until", &render_until, nb::arg("error_bound"), nb::arg("progress") = nb::none(),
+             nb::arg("time_limit") = nb::none(),
+             "A beauty render: gives every pixel 16 samples, then more to the worst tiles, until `error` is "
+             "within the bound.\n"
+             "The other arguments are those of `render`, but that the fraction of progress is a guess. "
+             "Returns whether the bound\n"
+             "is kept. How many samples a pixel has in the end depends on the samples alone.")
         .def("cancel", &Renderer::cancel, "Makes a running render return, from another thread.")
         .def("mean", &mean,
              "float32 (height, width, 3): linear radiance, row 0 at the top; 0 where there is no sample.")
@@ -160,7 +178,9 @@ void bind_renderer(nb::module_& m) {
         .def(
             "half_sum",
             [](const Renderer& r) { return per_pixel(r, [](const Pixel& p) { return p.half_sum; }); },
-            "float64 (height, width, 3): sum of the valid samples of even index.")
+            "float64 (height, width, 3): sum of the valid samples of one half, of those whose index is in "
+            "the first half of an\n"
+            "octave [2^k, 2^(k + 1)), or of the first 16.")
         .def(
             "sample_count",
             [](const Renderer& r) { return counts(r, [](const Pixel& p) { return p.count; }); },
@@ -169,8 +189,12 @@ void bind_renderer(nb::module_& m) {
             "invalid_per_pixel",
             [](const Renderer& r) { return counts(r, [](const Pixel& p) { return p.invalid; }); },
             "uint64 (height, width): of those, how many are not in the sums.")
+        .def(
+            "half_count",
+            [](const Renderer& r) { return counts(r, [](const Pixel& p) { return p.half_count; }); },
+            "uint64 (height, width): samples in half_sum.")
         .def("resume", &resume, nb::arg("sum"), nb::arg("sum_squares"), nb::arg("half_sum"),
-             nb::arg("sample_count"), nb::arg("invalid_per_pixel"),
+             nb::arg("sample_count"), nb::arg("invalid_per_pixel"), nb::arg("half_count"),
              "Goes on from these, as another renderer of the same scene, settings and first sample gave "
              "them. Raises\n"
              "ValueError for another size.")
@@ -187,6 +211,10 @@ void bind_renderer(nb::module_& m) {
         .def_prop_ro("rays", &Renderer::rays, "Rays traced, shadow rays included.")
         .def_prop_ro("seconds", &Renderer::seconds, "Time spent in `render`.")
         .def_prop_ro("threads", &Renderer::threads)
+        .def_prop_ro("error", &Renderer::error,
+                     "Error of the film as the running or last render last saw it (see film_error); infinite "
+                     "where it cannot\n"
+                     "be told.")
         .def_prop_ro("invalid_count", &Renderer::invalid_count,
                      "Samples that were no finite numbers >= 0; not in the sums.")
         .def_prop_ro(
@@ -197,6 +225,19 @@ void bind_renderer(nb::module_& m) {
                 return all;
             },
             "The first thousand of them: (x, y, sample).");
+    m.def(
+        "film_error", &film_error_of, nb::arg("sum"), nb::arg("sum_squares"), nb::arg("half_sum"),
+        nb::arg("sample_count"), nb::arg("invalid_per_pixel"), nb::arg("half_count"),
+        nb::sig("def film_error(sum: NDArray[numpy.float64], sum_squares: NDArray[numpy.float64], half_sum: "
+                "NDArray[numpy.float64], sample_count: NDArray[numpy.uint64], invalid_per_pixel: "
+                "NDArray[numpy.uint64], half_count: NDArray[numpy.uint64]) -> tuple[float, float, float, "
+                "NDArray[numpy.float64]]"),
+        "The error of a film, the lower and the upper end of its 95% confidence interval, and the errors of "
+        "its tiles of\n"
+        "16 x 16 pixels, (rows, columns). A tile's is relative: the root mean square of its pixels' and "
+        "channels' standard\n"
+        "errors, estimated from the halves, over its mean radiance; the film's is what 95% of the tiles do "
+        "not exceed.");
 }
 
 }  // namespace etendue

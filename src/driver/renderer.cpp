@@ -3,6 +3,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "driver/beauty.h"
+
 namespace etendue {
 
 namespace {
@@ -10,6 +12,8 @@ namespace {
 // A pass is short enough for a picture and a clock reading to be had often, and long enough to keep threads
 // busy.
 constexpr double PASS_SECONDS = 0.25;
+// The error is worth a look at the whole film this often.
+constexpr double LOOK_SECONDS = 1;
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -54,6 +58,7 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     }
     samples_done_ = taken;
     uint64_t pass = 1;
+    Clock::time_point looked = start;
     while (done < samples && !stop_) {
         const Clock::time_point pass_start = Clock::now();
         const bool may_stop = done > 0;
@@ -66,7 +71,12 @@ bool Renderer::render(uint64_t samples, double time_limit) {
         seconds_ = seconds_before + seconds_since(start);
         const double per_sample = seconds_since(pass_start) / static_cast<double>(pass);
         pass = std::clamp<uint64_t>(static_cast<uint64_t>(PASS_SECONDS / per_sample), 1, 2 * pass);
+        if (seconds_since(looked) > LOOK_SECONDS) {
+            look(workers);
+            looked = Clock::now();
+        }
     }
+    look(workers);
     seconds_ = seconds_before + seconds_since(start);
     stop_ = false;
     return std::ranges::all_of(film_.pixels(), [&](const Pixel& pixel) { return pixel.count >= samples; });
@@ -80,15 +90,61 @@ bool Renderer::render_coarse(uint32_t stride) {
     return !stop_.exchange(false);
 }
 
+bool Renderer::render_until(double error_bound, double time_limit) {
+    const Clock::time_point start = Clock::now();
+    const auto has_minimum = [](const Pixel& pixel) { return pixel.count >= BEAUTY_MINIMUM; };
+    samples_expected_ = 0;
+    if (!std::ranges::all_of(film_.pixels(), has_minimum) && !render(BEAUTY_MINIMUM, time_limit))
+        return false;
+    const double seconds_before = seconds_ - seconds_since(start);
+    TileWorkers workers(threads_);
+    uint64_t taken = 0;
+    for (const Pixel& pixel : film_.pixels()) taken += pixel.count;
+    samples_done_ = taken;
+    bool complete = false;
+    while (!stop_) {
+        const std::vector<TileError> errors = look(workers);
+        samples_expected_ = samples_at(errors, tiles_, error_bound);
+        const std::vector<TileGoal> goals = next_goals(errors, error_bound);
+        complete = goals.empty();
+        if (complete) break;
+        // Pixel by pixel, so that all threads have work where few tiles are left, and the clock is read often.
+        constexpr uint32_t SIDE = Tiles::SIDE, PIXELS = SIDE * SIDE;
+        workers.in_order(goals.size() * PIXELS, [&](uint32_t index) {
+            const TileGoal& goal = goals[index / PIXELS];
+            const Tile tile = tiles_[goal.tile];
+            const uint32_t x = tile.x0 + index % SIDE, y = tile.y0 + index % PIXELS / SIDE;
+            if (x < tile.x1 && y < tile.y1) {
+                const std::shared_lock lock(tile_mutexes_[goal.tile]);
+                render_part({x, y, x + 1, y + 1}, 1, goal.samples);
+            }
+            if (seconds_since(start) > time_limit) stop_ = true;
+        });
+        seconds_ = seconds_before + seconds_since(start);
+    }
+    seconds_ = seconds_before + seconds_since(start);
+    stop_ = false;
+    return complete;
+}
+
+std::vector<TileError> Renderer::look(TileWorkers& workers) {
+    std::vector<TileError> errors = tile_errors(film_, workers);
+    error_ = film_error(errors).error;
+    return errors;
+}
+
 void Renderer::render_tile(uint32_t index, uint32_t stride, uint64_t samples) {
-    const Tile tile = tiles_[index];
     const std::lock_guard lock(tile_mutexes_[index]);
+    render_part(tiles_[index], stride, samples);
+}
+
+void Renderer::render_part(const Tile& part, uint32_t stride, uint64_t samples) {
     ContributionObserver observer;
     Context context(scene_, sensor_.make_sampler(), contributions_.empty() ? nullptr : &observer);
     uint64_t taken = 0;
     // A tile begins at a multiple of every stride that divides its side.
-    for (uint32_t y = tile.y0; y < tile.y1; y += stride) {
-        for (uint32_t x = tile.x0; x < tile.x1; x += stride) {
+    for (uint32_t y = part.y0; y < part.y1; y += stride) {
+        for (uint32_t x = part.x0; x < part.x1; x += stride) {
             taken += render_pixel(context, observer, x, y, samples);
         }
     }

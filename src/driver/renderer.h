@@ -5,9 +5,11 @@
 #include <atomic>
 #include <functional>
 #include <mutex>
+#include <shared_mutex>
 
 #include "algorithms/algorithm.h"
 #include "driver/contributions.h"
+#include "driver/film_error.h"
 #include "driver/sensor.h"
 #include "driver/tiles.h"
 #include "gi/film.h"
@@ -42,11 +44,21 @@ class Renderer {
     /// samples that `render` then need not take. False where it was cancelled.
     bool render_coarse(uint32_t stride);
 
+    /// A beauty render: every pixel gets BEAUTY_MINIMUM samples, then the worst tiles more, until the film's error
+    /// is within the bound. False where it returned before that, as above. How many samples a pixel has in the
+    /// end depends on the samples alone, not on threads or interruptions.
+    bool render_until(double error_bound, double time_limit = INFINITE);
+
     /// Makes the running `render`, or else the next, return within a few milliseconds. From any thread.
     void cancel() { stop_ = true; }
 
-    /// Of the running or last `render`: pixels x samples that it was asked for and has.
+    /// Of the running or last `render`: pixels x samples that it was asked for and has. Of `render_until`: all
+    /// that it has.
     uint64_t samples_done() const { return samples_done_; }
+    /// How many `render_until` expects to have in the end; 0 while it cannot tell.
+    double samples_expected() const { return samples_expected_; }
+    /// The film's error as it was when the running or last render last looked; infinite where it cannot tell.
+    double error() const { return error_; }
 
     const Scene& scene() const { return scene_; }
     const Sensor& sensor() const { return sensor_; }
@@ -87,7 +99,11 @@ class Renderer {
     static constexpr size_t MAX_INVALID_LISTED = 1000;
 
   private:
+    /// The tiles' errors, and the film's for others to see.
+    std::vector<TileError> look(TileWorkers& workers);
     void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
+    /// Whoever calls it holds the tile's mutex.
+    void render_part(const Tile& part, uint32_t stride, uint64_t samples);
     /// Returns how many samples it took.
     uint64_t render_pixel(Context& context, ContributionObserver& observer, uint32_t x, uint32_t y,
                           uint64_t samples);
@@ -100,11 +116,12 @@ class Renderer {
     int threads_;
     Film film_;
     Tiles tiles_;
-    mutable std::vector<std::mutex> tile_mutexes_;  // held by who renders a tile, or reads it
+    // Held by who renders a tile, or reads it; shared by those who render single pixels of it.
+    mutable std::vector<std::shared_mutex> tile_mutexes_;
     std::vector<ContributionSums> contributions_;
     std::atomic<bool> stop_ = false;
     std::atomic<uint64_t> rays_ = 0, samples_done_ = 0, invalid_count_ = 0;
-    std::atomic<double> seconds_ = 0;
+    std::atomic<double> seconds_ = 0, error_ = INFINITE, samples_expected_ = 0;
     mutable std::mutex invalid_mutex_;
     std::vector<InvalidSample> invalid_;
 };

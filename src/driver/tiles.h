@@ -8,6 +8,7 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 
 namespace etendue {
@@ -15,6 +16,7 @@ namespace etendue {
 /// Pixels from (x0, y0) to before (x1, y1).
 struct Tile {
     uint32_t x0, y0, x1, y1;
+    uint32_t pixels() const { return (x1 - x0) * (y1 - y0); }
 };
 
 /// An image cut into squares, by rows from the top.
@@ -60,15 +62,27 @@ class TileWorkers {
     /// Calls work(index, tile) for all tiles, each on one thread.
     template <class Work>
     void for_each(const Tiles& tiles, const Work& work) {
+        for_each(tiles.count(), [&](uint32_t index) { work(index, tiles[index]); });
+    }
+
+    /// Calls work(index) for 0 to before `count`, begun in this order.
+    template <class Work>
+    void in_order(uint32_t count, const Work& work) {
+        std::atomic<uint32_t> next = 0;
+        for_each(count, [&](uint32_t) { work(next++); });
+    }
+
+  private:
+    template <class Work>
+    void for_each(uint32_t count, const Work& work) {
         arena_.execute([&] {
-            oneapi::tbb::parallel_for(0u, tiles.count(), [&](uint32_t index) {
+            oneapi::tbb::parallel_for(0u, count, [&](uint32_t index) {
                 const FlushDenormals flush;
-                work(index, tiles[index]);
+                work(index);
             });
         });
     }
 
-  private:
     using Control = oneapi::tbb::global_control;
     // oneTBB itself would start no more threads than there are cores.
     static Control limit(int threads) {

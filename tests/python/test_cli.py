@@ -125,6 +125,10 @@ def test_options_and_outputs_of_every_kind(etendue: Command) -> None:
         "rays",
         "samples_per_second",
         "mean",
+        "error",
+        "error_interval",
+        "error_eps",
+        "complete",
         "invalid_samples",
         "outputs",
     ]
@@ -132,6 +136,8 @@ def test_options_and_outputs_of_every_kind(etendue: Command) -> None:
     assert (said["invalid_samples"], said["outputs"]) == (0, outputs)
     assert said["samples_per_second"] == pytest.approx(600 / said["seconds"])
     assert said["rays"] >= 600
+    assert (said["error_eps"], said["complete"]) == (None, True)
+    assert 0 < said["error_interval"][0] < said["error"] < said["error_interval"][1]
     linear = read("a.exr")
     assert linear.shape == (10, 20, 3)
     np.testing.assert_allclose(said["mean"], linear.mean(axis=(0, 1)), rtol=1e-5)
@@ -259,7 +265,7 @@ def test_an_image_larger_than_the_memory(etendue: Command, monkeypatch: pytest.M
     monkeypatch.setattr(memory, "of_machine", lambda: 16_000_000_000)
     run = etendue("render", "lit.json", "--size", "65536x65536")
     assert (run.code, run.out) == (2, "")
-    assert run.err == "an image of 65536 x 65536 pixels needs 979 GB of memory; this machine has 16 GB\n"
+    assert run.err == "an image of 65536 x 65536 pixels needs 1048 GB of memory; this machine has 16 GB\n"
 
 
 def test_outputs_are_tried_before_anything_else(etendue: Command) -> None:
@@ -371,14 +377,13 @@ def test_ctrl_c_while_loading(etendue: Command, monkeypatch: pytest.MonkeyPatch)
 
 def test_progress_is_never_complete_before_the_end(etendue: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
-    describe = progress.Goal.describe
+    show = progress._Lines.__call__
 
-    def watched(goal: progress.Goal, fraction: float, *arguments: float) -> Any:
-        parts = describe(goal, fraction, *arguments)
-        seen.append((fraction, parts[0]))
-        return parts
+    def watched(lines: progress._Lines, status: progress.Status) -> None:
+        seen.append((status.fraction, status.words()[0]))
+        show(lines, status)
 
-    monkeypatch.setattr(progress.Goal, "describe", watched)
+    monkeypatch.setattr(progress._Lines, "__call__", watched)
     run = etendue("render", "lit.json", "--spp", "2000")
     assert run.code == 0
     assert all(percent != "100%" for fraction, percent in seen if fraction < 1)

@@ -21,7 +21,7 @@ from etendue.film import file as film_file
 from etendue.film import mean_of, sample_ranges
 from etendue.film import replacing as film_replacing
 
-ARRAYS = ("image", "sum", "sum_squares", "half_sum", "sample_count", "invalid_per_pixel")
+ARRAYS = ("image", "sum", "sum_squares", "half_sum", "sample_count", "invalid_per_pixel", "half_count")
 
 
 @pytest.fixture
@@ -89,10 +89,12 @@ def test_other_programs_see_an_image(scene: Scene) -> None:
     assert spec.getattribute("etendue:scene_hash") == film.origin.scene_hash
 
 
-def test_the_half_is_that_of_even_samples(scene: Scene) -> None:
-    film = scene.render(samples=(3, 7))
-    even = etendue.merge([scene.render(samples=(4, 5)), scene.render(samples=(6, 7))])
-    np.testing.assert_array_equal(film.half_sum, even.sum)
+def test_the_half_is_that_of_the_first_halves_of_octaves(scene: Scene) -> None:
+    film = scene.render(samples=(3, 70))
+    half = etendue.merge([scene.render(samples=part) for part in ((3, 8), (16, 24), (32, 48), (64, 70))])
+    np.testing.assert_allclose(film.half_sum, half.sum, rtol=1e-12)
+    np.testing.assert_array_equal(film.half_count, half.sample_count)
+    assert (film.half_count == 5 + 8 + 16 + 6).all()
 
 
 def test_what_is_no_film_is_refused(scene: Scene) -> None:
@@ -296,7 +298,10 @@ def test_sums_of_a_million_samples_are_exact(lit_scene: Callable[..., None]) -> 
     assert value == np.float32(0.7)
     # 24 bits of the value and 20 of the count: every one of the million sums is a double without rounding.
     assert (film.sum == 1e6 * value).all()
-    assert (film.half_sum == 5e5 * value).all()
+    # The octave of 2^19 is complete, and of that of 2^20 nothing is in it.
+    half = 2**18 + min(10**6 - 2**19, 2**18)
+    assert (film.half_count == half).all()
+    assert (film.half_sum == half * value).all()
     np.testing.assert_allclose(film.sum_squares, 1e6 * value * value, rtol=1e-10)
     assert (film.image == np.float32(0.7)).all()
 

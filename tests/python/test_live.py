@@ -71,7 +71,7 @@ def test_snapshots_of_a_running_render_are_of_one_moment(lit_scene: Callable[...
     try:
         seen = []
         while len(seen) < 5:
-            total, squares, half, count, _ = renderer.snapshot()
+            total, squares, half, count, *_ = renderer.snapshot()
             if seen and count.sum() <= seen[-1]:
                 continue
             seen.append(count.sum())

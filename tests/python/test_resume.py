@@ -19,7 +19,7 @@ import pytest
 import etendue
 from etendue import EtendueError, Film, cli
 from etendue.cli.interrupts import Interrupts
-from etendue.cli.progress import Goal
+from etendue.cli.progress import Goal, Status
 from etendue.film import file as film_file
 
 FILM = "a.film.exr"
@@ -387,6 +387,6 @@ def test_python_refuses_what_the_command_refuses(lit_scene: WriteScene) -> None:
 
 def test_the_progress_of_what_goes_on_counts_its_own_time() -> None:
     goal = Goal(100, 1000, spp_before=50)
-    assert goal.describe(0.75, 75, 5.0) == ("75%", "75/100 spp", "5 k samples/s", "5.0 s left")
-    assert goal.describe(0.5, 50, 0.0) == ("50%", "50/100 spp", "", "")
-    assert Goal(100, 1000, spp_before=100).describe(1, 100, 0.0)[0] == "100%"
+    assert Status(goal, 0.75, 75, 5.0).words() == ("75%", "75/100 spp", "5 k samples/s", "", "5.0 s left")
+    assert Status(goal, 0.5, 50, 0.0).words() == ("50%", "50/100 spp", "", "", "")
+    assert Status(Goal(100, 1000, spp_before=100), 1, 100, 0.0).words()[0] == "100%"

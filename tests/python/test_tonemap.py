@@ -151,7 +151,7 @@ def test_tonemap_takes_the_film_s_exposure_and_other_images(
         ("a.film.exr -o a.png --false-colour samples --view agx", "--view: without effect on --false-colour"),
         (
             "a.film.exr -o a.png --false-colour bias",
-            'there is no quantity "bias" to show (allowed: variance, relative-error, samples)',
+            'there is no quantity "bias" to show (allowed: variance, relative-error, tile-error, samples)',
         ),
         (
             "a.film.exr -o a.png --false-colour samples --scale 2:1",

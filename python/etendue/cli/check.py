@@ -36,7 +36,7 @@ def report(path: Path, overrides: Sequence[str] = (), data_dirs: Sequence[str | 
     rows = [
         ("scene", f"{path}: no problems, {warnings}"),
         ("algorithm", scene.config.algorithm),
-        ("image", f"{framebuffer.res_w} x {framebuffer.res_h}, {framebuffer.sppx} samples per pixel"),
+        ("image", f"{framebuffer.res_w} x {framebuffer.res_h}, {_goal(scene)}"),
         ("triangles", f"{scene.core.triangle_count:,}"),
         *_lights(scene),
         ("memory", f"{si(sizes[0])}B for the scene, {si(sizes[1])}B for the image"),
@@ -45,6 +45,12 @@ def report(path: Path, overrides: Sequence[str] = (), data_dirs: Sequence[str | 
     ]
     lines = [f"{name:<10} {value}" for name, value in rows]
     return "\n".join([*lines, *(f"warning: {warning}" for warning in scene.warnings)])
+
+
+def _goal(scene: Scene) -> str:
+    if scene.config.beauty_render:
+        return f"samples until the error is below {scene.config.error_eps:g}"
+    return f"{scene.config.framebuffer.sppx} samples per pixel"
 
 
 def _lights(scene: Scene) -> list[tuple[str, str]]:
@@ -71,4 +77,5 @@ def _time(scene: Scene) -> str:
     per_sample = film.seconds / max(1, film.samples) * pixels
     whole = per_sample * framebuffer.sppx
     spp = framebuffer.sppx
-    return f"about {clock(per_sample)} for 1 spp, {clock(whole)} for {spp} (measured on a small image)"
+    goal = "" if scene.config.beauty_render else f", {clock(whole)} for {spp}"
+    return f"about {clock(per_sample)} for 1 spp{goal} (measured on a small image)"

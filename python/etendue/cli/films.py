@@ -8,8 +8,8 @@ from pathlib import Path
 from .. import outputs
 from ..display import tonemap as tonemapped
 from ..errors import EtendueError
+from ..film import Film, merging, sample_ranges, save_pixels
 from ..film import file as film_file
-from ..film import merging, sample_ranges, save_pixels
 from .words import counted
 
 
@@ -29,7 +29,7 @@ def merge(parts: Sequence[Path], output: Path) -> str:
 
 def tonemap(film_path: Path, output: Path, exposure: float | None, view: str) -> None:
     """Writes the image of a film, or another linear image, as a screen shows it."""
-    _require_display(output)
+    require_display(output)
     if exposure is not None and not 0 < exposure < float("inf"):
         raise EtendueError(f"--exposure: a factor above 0 is needed, not {exposure:g}")
     try:
@@ -44,15 +44,21 @@ def tonemap(film_path: Path, output: Path, exposure: float | None, view: str) ->
 
 def false_colour(film_path: Path, output: Path, name: str, scale: str | None) -> None:
     """Writes a quantity of a film in false colours, with their scale."""
+    require_display(output)
+    limits = None if scale is None else _limits(scale)
+    false_colour_of(film_file.read(film_path), output, name, limits)
+
+
+def false_colour_of(film: Film, output: Path, name: str, limits: tuple[float, float] | None = None) -> None:
+    """As `false_colour`, of a film in memory."""
     from ..display import false_colour as colours
 
-    _require_display(output)
-    limits = None if scale is None else _limits(scale)
-    values = colours.quantity(film_file.read(film_path), name)
+    values = colours.quantity(film, name)
     save_pixels(output, colours.picture(values, name.replace("-", " "), limits), {})
 
 
-def _require_display(output: Path) -> None:
+def require_display(output: Path) -> None:
+    """EtendueError where `output` is no image for a screen, or cannot be written."""
     if output.suffix.lower() in (".exr", ".hdr"):
         raise EtendueError(f"{output}: {output.suffix} files stay linear; allowed here: .png, .jpg, .jpeg")
     outputs.check([output])

@@ -11,7 +11,7 @@ from .words import si
 
 # The renderer's sums, squares and counts in double precision, a copy of them in the film, and the image
 # in single precision with what encoding it takes.
-_BYTES_PER_PIXEL = 88 + 88 + 52
+_BYTES_PER_PIXEL = 96 + 96 + 52
 
 
 def of_image(framebuffer: Framebuffer) -> int:

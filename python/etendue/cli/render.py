@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import json
+import math
+import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,7 +18,8 @@ from ..config.overrides import Override
 from ..errors import EtendueError
 from ..film import file as film_file
 from ..film import resuming
-from . import beside, memory, progress
+from . import beside, films, memory, progress
+from .app import USAGE_ERROR
 from .interrupts import Interrupts
 from .words import clock, counted, si
 
@@ -44,11 +48,14 @@ class Job:
     samples: Range | None = None
     aovs: Sequence[str] = ()
     denoise: bool = False
+    sample_map: Path | None = None
+    json_progress: bool = False
 
-    def say(self, text: str) -> None:
-        """A line for people; the standard output is left to --json."""
-        if not self.quiet:
-            print(text, file=sys.stderr, flush=True)
+    def say(self, text: str, event: str = "message") -> None:
+        """A line for people, or for scripts that want progress; the standard output is left to --json."""
+        if not self.quiet or event == "error":
+            line = json.dumps({"event": event, "text": text}) if self.json_progress else text
+            print(line, file=sys.stderr, flush=True)
 
     @property
     def film_path(self) -> Path | None:
@@ -62,6 +69,7 @@ def overrides_of(
     size: tuple[int, int] | None,
     seed: int | None,
     settings: Sequence[str],
+    beauty: bool = False,
 ) -> list[str | Override]:
     """The changes to the scene file that options ask for, after those of --set."""
     changes: list[str | Override] = list(settings)
@@ -72,6 +80,7 @@ def overrides_of(
         ("--size", "framebuffer.res_w", width),
         ("--size", "framebuffer.res_h", height),
         ("--seed", "seed", seed),
+        ("--beauty", "beauty_render", beauty or None),
     ):
         if value is not None:
             changes.append(Override(key, value, option))
@@ -84,8 +93,13 @@ def run(job: Job) -> int:
         try:
             return _run(job, interrupts)
         except KeyboardInterrupt:
-            print("interrupted", file=sys.stderr)
+            job.say("interrupted", "error")
             return interrupts.exit_code
+        except EtendueError as error:
+            if not job.json_progress:
+                raise
+            job.say(str(error), "error")
+            return USAGE_ERROR
 
 
 def _run(job: Job, interrupts: Interrupts) -> int:
@@ -93,6 +107,8 @@ def _run(job: Job, interrupts: Interrupts) -> int:
     name = job.config.stem if job.config is not None else resuming.scene_name(start)
     paths = outputs.check(job.outputs or [f"{name}.exr" if job.aovs else f"{name}.png"])
     wanted = beside.wanted(job.aovs, paths, job.denoise)
+    if job.sample_map is not None:
+        films.require_display(job.sample_map)
     if job.film_path is not None:
         resuming.check_place(job.film_path, job.resume, [*paths, *wanted.denoised])
     config, data_dirs = _config(job, start)
@@ -106,7 +122,8 @@ def _run(job: Job, interrupts: Interrupts) -> int:
         job.say(f"warning: {warning}")
     if start is not None and job.resume is not None:
         resuming.require_same_scene(scene, start, job.resume)
-    spp = _spp_wanted(job, config, start)
+    is_beauty = config.beauty_render and job.spp is None and job.samples is None
+    spp = None if is_beauty else _spp_wanted(job, config, start)
     job.say(_introduction(scene, spp, start))
     film = _render(job, scene, start, spp, wanted.kept_apart, interrupts)
     if film is None:
@@ -115,9 +132,10 @@ def _run(job: Job, interrupts: Interrupts) -> int:
     if job.film_path is not None and wanted.takes_time:
         # Before what follows can be killed. If it fails, so will the writing at the end, and tell.
         resuming.saved(film, job.film_path, compressed=False)
-    film, denoised, left_out, problem = beside.made(scene, film, wanted, job.threads, job.say, job.quiet)
+    quiet = job.quiet or job.json_progress
+    film, denoised, left_out, problem = beside.made(scene, film, wanted, job.threads, job.say, quiet)
     with interrupts.shielded():
-        _save(film, paths, job.film_path, denoised, wanted.denoised)
+        _save(film, paths, denoised, wanted.denoised, job)
     stopped = film.interrupted or interrupts.by_signal
     interrupted = left_out is not None or (stopped and not film.complete)
     for line in _closing(film, paths, job, interrupted):
@@ -157,12 +175,18 @@ def _spp_wanted(job: Job, config: Config, start: Film | None) -> int:
 
 
 def _render(
-    job: Job, scene: Scene, start: Film | None, spp: int, aovs: Sequence[str], interrupts: Interrupts
+    job: Job,
+    scene: Scene,
+    start: Film | None,
+    spp: int | None,
+    aovs: Sequence[str],
+    interrupts: Interrupts,
 ) -> Film | None:
     """The film; None where Ctrl-C came before its first samples."""
-    framebuffer = scene.config.framebuffer
+    config, framebuffer = scene.config, scene.config.framebuffer
     before = 0.0 if start is None else start.spp
-    goal = progress.Goal(spp, framebuffer.res_w * framebuffer.res_h, job.time_limit, before)
+    bound = config.error_eps if spp is None else None
+    goal = progress.Goal(spp, framebuffer.res_w * framebuffer.res_h, job.time_limit, before, bound)
 
     def checkpoint(film: Film) -> None:
         assert job.film_path is not None
@@ -173,7 +197,7 @@ def _render(
         if interrupts.by_signal:
             raise KeyboardInterrupt
 
-    with progress.shown(goal, job.quiet) as report:
+    with progress.shown(goal, job.quiet, job.json_progress) as report:
         try:
             return scene.render(
                 spp=None if job.samples is not None else spp,
@@ -182,6 +206,7 @@ def _render(
                 threads=job.threads,
                 time_limit=job.time_limit,
                 progress=report,
+                error=report.error,
                 checkpoint=None if job.film_path is None else checkpoint,
                 checkpoint_seconds=job.checkpoint,
                 aovs=aovs,
@@ -191,34 +216,36 @@ def _render(
 
 
 def _save(
-    film: Film,
-    paths: Sequence[Path],
-    film_path: Path | None,
-    denoised: Film | None,
-    denoised_paths: Sequence[Path],
+    film: Film, paths: Sequence[Path], denoised: Film | None, denoised_paths: Sequence[Path], job: Job
 ) -> None:
     """Writes all that can be written, the film first, before it tells what cannot."""
     problems: list[str] = []
-    if film_path is not None and (problem := resuming.saved(film, film_path)) is not None:
+    if job.film_path is not None and (problem := resuming.saved(film, job.film_path)) is not None:
         problems.append(problem)
-    images = [(path, film) for path in paths]
+    writers = [functools.partial(film.save, path) for path in paths]
     if denoised is not None:
-        images += [(path, denoised) for path in denoised_paths]
-    for path, image in images:
+        writers += [functools.partial(denoised.save, path) for path in denoised_paths]
+    if job.sample_map is not None:
+        writers.append(functools.partial(films.false_colour_of, film, job.sample_map, "samples"))
+    for write in writers:
         try:
-            image.save(path)
+            write()
         except EtendueError as error:
             problems.append(str(error))
     if problems:
         raise EtendueError("\n".join(problems))
 
 
-def _introduction(scene: Scene, spp: int, start: Film | None) -> str:
+def _introduction(scene: Scene, spp: int | None, start: Film | None) -> str:
     config, framebuffer = scene.config, scene.config.framebuffer
     contents = (counted(scene.core.triangle_count, "triangle"), counted(len(scene.core.lights), "light"))
     there = "" if start is None else f", {_spp(start)} of them there"
+    goal = f"{spp} spp{there}"
+    if spp is None:
+        goal = f"beauty render to an error of {config.error_eps:g}"
+        goal += "" if start is None else f", {_spp(start)} spp there"
     return (
-        f"{config.algorithm}, {framebuffer.res_w} x {framebuffer.res_h}, {spp} spp{there}; "
+        f"{config.algorithm}, {framebuffer.res_w} x {framebuffer.res_h}, {goal}; "
         f"{', '.join(contents)}, loaded in {clock(scene.load_seconds)}"
     )
 
@@ -232,11 +259,14 @@ def _closing(film: Film, paths: Sequence[Path], job: Job, interrupted: bool) -> 
         x, y, sample = film.invalid[0]
         where = f"the first at pixel ({x}, {y}), sample {sample}"
         yield f"warning: {counted(film.invalid_count, 'sample')} without a finite radiance left out, {where}"
-    wanted = film.goal[1] - film.goal[0]
     if not film.complete:
-        yield f"{'interrupted' if interrupted else 'the time is over'}: {_spp(film)} of {wanted} spp are done"
+        wanted = film.goal[1] - film.goal[0]
+        done = "" if film.bound is not None else f": {_spp(film)} of {wanted} spp are done"
+        yield f"{'interrupted' if interrupted else 'the time is over'}{done}"
+    if film.bound is not None:
+        yield _beauty_report(film, film.bound)
     rate = f" ({si(film.samples / film.seconds)} samples/s)" if film.seconds > 0 else ""
-    written = [*paths, *([job.film_path] if job.film_path is not None else [])]
+    written = [*paths, *(path for path in (job.sample_map, job.film_path) if path is not None)]
     yield f"{_spp(film)} spp in {clock(film.seconds)}{rate}: {', '.join(map(str, written))}"
     if not film.complete and job.film_path is not None:
         yield f"to go on: {_command(job)}"
@@ -245,13 +275,24 @@ def _closing(film: Film, paths: Sequence[Path], job: Job, interrupted: bool) -> 
 def _command(job: Job) -> str:
     assert job.film_path is not None
     command = resuming.command(job.film_path, job.outputs, job.threads, job.checkpoint)
-    layers = f" --aov {','.join(job.aovs)}" if job.aovs else ""
+    layers = f" --sample-map {shlex.quote(str(job.sample_map))}" if job.sample_map is not None else ""
+    layers += f" --aov {','.join(job.aovs)}" if job.aovs else ""
     return f"{command}{layers}{' --denoise' if job.denoise else ''}"
+
+
+def _beauty_report(film: Film, bound: float) -> str:
+    error, counts = film.error, film.sample_count
+    share = (error.tiles <= bound).mean()
+    return (
+        f"error {error.value:.3g} (95% interval {error.low:.3g} to {error.high:.3g}), {share:.1%} of the tiles within "
+        f"{bound:g}; {counts.min()} to {counts.max()} samples per pixel"
+    )
 
 
 def _summary(film: Film, scene: Scene, paths: Sequence[Path]) -> dict[str, Any]:
     """What --json prints."""
     height, width = film.image.shape[:2]
+    error = film.error
     return {
         "algorithm": scene.config.algorithm,
         "spp": int(film.spp) if film.spp.is_integer() else film.spp,
@@ -262,6 +303,10 @@ def _summary(film: Film, scene: Scene, paths: Sequence[Path]) -> dict[str, Any]:
         "rays": film.rays,
         "samples_per_second": film.samples / film.seconds if film.seconds > 0 else None,
         "mean": film.image.mean(axis=(0, 1), dtype="float64").tolist(),
+        "error": error.value if math.isfinite(error.value) else None,
+        "error_interval": [error.low, error.high] if math.isfinite(error.value) else None,
+        "error_eps": film.bound,
+        "complete": film.complete,
         "invalid_samples": film.invalid_count,
         "outputs": [str(path) for path in paths],
     }

@@ -120,11 +120,10 @@ def scene_of(scene: Scene) -> Scene:
 def of_film(film: Film, name: str, path: Path | None = None) -> Reference:
     """The reference that a film holds."""
     count = (film.sample_count - film.invalid_per_pixel).astype(np.float64)[..., None]
-    # Samples of even index are the first, the third ... of a range that begins evenly.
-    even = (count + (1 - sample_ranges.hull(film.held)[0] % 2)) // 2
+    in_half = film.half_count.astype(np.float64)[..., None]
     half = [
         np.divide(total, number, out=np.zeros_like(total), where=number > 0).astype(np.float32)
-        for total, number in ((film.half_sum, even), (film.sum - film.half_sum, count - even))
+        for total, number in ((film.half_sum, in_half), (film.sum - film.half_sum, count - in_half))
     ]
     return Reference(
         film.image,

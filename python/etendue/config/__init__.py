@@ -75,10 +75,12 @@ class Config(Section):
     beauty_render: bool = Field(
         default=False,
         title="Beauty render",
-        description="Keep adding samples until the error estimate is below error_eps.",
+        description="Keep adding samples, worst tiles first, until the error is below error_eps; no sppx then.",
     )
     error_eps: Positive = Field(
-        default=0.05, title="Error bound", description="Bound of the error estimate for beauty_render."
+        default=0.05,
+        title="Error bound",
+        description="The relative standard error that 95% of the tiles of a beauty render are to keep below.",
     )
     sampler: str = Field(default="sobol", title="Sampler", description="Where the random numbers come from.")
     filter: str = Field(
@@ -163,9 +165,6 @@ class Config(Section):
                 found.append(
                     self.problem(("scene", key), "volumes are not rendered; the scene is shown without it")
                 )
-        if self.beauty_render:
-            message = "is not available; every pixel gets framebuffer.sppx samples"
-            found.append(self.problem(("beauty_render",), message))
         found += self._material_warnings()
         return sorted(found, key=lambda problem: problem.line or 0)
 

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from ..errors import EtendueError
 from ..film import Film
+from ..film.error import TILE
 from . import linear_to_srgb
 
-QUANTITIES = ("variance", "relative-error", "samples")
+QUANTITIES = ("variance", "relative-error", "tile-error", "samples")
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 _UNDEFINED = 0.25
 # From dark to light in even steps of lightness, apart for all kinds of colour vision (viridis).
@@ -30,13 +31,17 @@ def quantity(film: Film, name: str) -> NDArray[np.float64]:
 
     "variance" is the mean of the three channels' estimated variance of the pixel's mean, "relative-error" the
     standard error of the pixel's luminance over that luminance, taking the channels' errors to go together,
-    "samples" the number of samples taken.
+    "tile-error" that of the tile, which beauty renders go by (`Film.error`), "samples" the number of samples taken.
     """
     if name not in QUANTITIES:
         raise EtendueError(f'there is no quantity "{name}" to show (allowed: {", ".join(QUANTITIES)})')
     valid = (film.sample_count - film.invalid_per_pixel).astype(np.float64)
     if name == "samples":
         return film.sample_count.astype(np.float64)
+    if name == "tile-error":
+        height, width = film.sample_count.shape
+        tiles = film.error.tiles.repeat(TILE, axis=0).repeat(TILE, axis=1)[:height, :width]
+        return np.where(np.isfinite(tiles), tiles, np.nan)
     count = np.where(valid > 1, valid, np.nan)[..., None]
     of_mean = np.maximum(film.sum_squares - film.sum**2 / count, 0) / (count - 1) / count
     if name == "variance":

@@ -19,6 +19,7 @@ from ..errors import EtendueError, nearest_name
 from .sample_ranges import Range, count, hull
 
 if TYPE_CHECKING:
+    from .error import FilmError
     from .origin import Origin
 
 _LINEAR, _DISPLAY = (".exr", ".hdr"), (".png", ".jpg", ".jpeg")
@@ -52,13 +53,16 @@ class Film:
     sum, sum_squares: float64 (height, width, 3), of the valid samples.
     rays: rays traced, shadow rays included. seconds: time spent rendering.
     invalid: (x, y, sample) of samples that were no finite radiance, the first thousand; invalid_count: all.
-    complete: whether every pixel has the samples asked for. interrupted: whether Ctrl-C is why not.
+    complete: whether every pixel has the samples asked for, or the bound is kept. interrupted: whether Ctrl-C is
+    why it is not.
     exposure: factor for display, by default that of the scene file.
     attributes: how the image was made, written into EXR files.
-    half_sum: float64 (height, width, 3), of the valid samples of even index: half of an independent pair.
+    half_sum, half_count: float64 (height, width, 3) and uint64 (height, width), sum and number of the valid
+    samples of one half: the first 8 of 16, and the first half of each further octave [2^k, 2^(k + 1)).
     invalid_per_pixel: uint64 (height, width), samples that are counted and not in the sums.
     ranges: the [first, end) of sample indices that every pixel has. partial: a range behind one of them that
     only some pixels have, each from its beginning on. goal: the range that the render was to fill.
+    bound: the error that a beauty render is to reach, and its goal is what it has; None for all other films.
     origin: the scene and the settings; None for a film that no render gave.
     contributions: float64 (height, width, 2, 2, 3), the sums of what BSDF sampling and light sampling found over
     at most two edges and over more, which add up to `sum`; None where they were not kept apart.
@@ -80,9 +84,11 @@ class Film:
     attributes: dict[str, Attribute] = field(default_factory=dict)
     half_sum: NDArray[np.float64] = field(default_factory=_nothing)
     invalid_per_pixel: NDArray[np.uint64] = field(default_factory=_no_counts)
+    half_count: NDArray[np.uint64] = field(default_factory=_no_counts)
     ranges: list[Range] = field(default_factory=list)
     partial: Range | None = None
     goal: Range = (0, 0)
+    bound: float | None = None
     origin: Origin | None = None
     contributions: NDArray[np.float64] | None = None
     aovs: dict[str, NDArray[Any]] = field(default_factory=dict)
@@ -97,6 +103,7 @@ class Film:
             np.zeros((height, width, 3)),
             half_sum=np.zeros((height, width, 3)),
             invalid_per_pixel=np.zeros((height, width), np.uint64),
+            half_count=np.zeros((height, width), np.uint64),
             **how,
         )
 
@@ -121,8 +128,18 @@ class Film:
         return self.goal[1] - self.goal[0] - count(self.ranges)
 
     def towards(self, goal: Range) -> Range:
-        """`goal`, made large enough for what the film has already."""
-        return hull([goal, *self.held])
+        """`goal`, made large enough for what the film has already.
+
+        Not for all that some pixels of a beauty render have, which may be more than anybody wants of all.
+        """
+        return hull([goal, *(self.held if self.bound is None else self.ranges)])
+
+    @property
+    def error(self) -> FilmError:
+        """How far the image is from what more samples would make of it: docs/beauty-render.md."""
+        from .error import error_of
+
+        return error_of(self)
 
     @property
     def variance(self) -> NDArray[np.float32]:

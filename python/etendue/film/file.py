@@ -21,7 +21,7 @@ from .origin import Origin, attributes_of
 if TYPE_CHECKING:
     from os import PathLike
 
-FORMAT = 1
+FORMAT = 2
 
 
 class NoFilm(EtendueError):
@@ -30,7 +30,7 @@ class NoFilm(EtendueError):
 
 _COLOURS = ("R", "G", "B")
 _SUMS = ("sum", "sum_squares", "half_sum")
-_COUNTS = ("sample_count", "invalid_per_pixel")
+_COUNTS = ("sample_count", "invalid_per_pixel", "half_count")
 # In the order of the words in memory.
 _WORDS = (
     *(f"{name}.{half}.{colour}" for name in _SUMS for colour in _COLOURS for half in ("low", "high")),
@@ -128,6 +128,8 @@ def _header(film: Film, origin: Origin) -> dict[str, Any]:
         "ranges": json.dumps(film.ranges),
         "partial": json.dumps(film.partial),
         "goal": json.dumps(film.goal),
+        "bound": json.dumps(film.bound),
+        "complete": int(film.complete),
         "rays": json.dumps(film.rays),
         "seconds": json.dumps(film.seconds),
         "invalid": json.dumps(film.invalid[:MOST_INVALID_LISTED]),
@@ -168,9 +170,11 @@ def _film(file: Path, notes: dict[str, Any]) -> Film:
             ranges=[(first, end) for first, end in json.loads(notes["ranges"])],
             partial=None if partial is None else (partial[0], partial[1]),
             goal=sample_ranges.hull([json.loads(notes["goal"])]),
+            bound=json.loads(notes["bound"]),
             origin=origin,
         )
+        # Whether a bound is kept shows from the arrays alone.
+        film.complete = film.missing == 0 and (film.bound is None or bool(notes["complete"]))
     except (KeyError, TypeError, ValueError) as error:
         raise EtendueError(f"{file}: the film's attributes are damaged ({error})") from None
-    film.complete = film.missing == 0
     return film

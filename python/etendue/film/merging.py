@@ -97,6 +97,7 @@ def _sum(films: Iterator[Film]) -> Film:
         aovs={},
         invalid=list(first.invalid),
         ranges=list(first.ranges),
+        bound=None,
     )
     for film in films:
         for name in _ARRAYS:
@@ -117,11 +118,12 @@ def _sum(films: Iterator[Film]) -> Film:
     return total
 
 
-_ARRAYS = ("sum", "sum_squares", "half_sum", "sample_count", "invalid_per_pixel")
+_ARRAYS = ("sum", "sum_squares", "half_sum", "sample_count", "invalid_per_pixel", "half_count")
 
 
 def _config_of(whole: Film, origin: Origin) -> dict[str, object]:
-    """The scene file's data, asking for the samples of the whole."""
+    """The scene file's data, asking for the samples of the whole, in every pixel."""
     first, end = whole.goal
     framebuffer = {**origin.config.get("framebuffer", {}), "sppx": min(end - first, sample_ranges.MOST)}
-    return {**origin.config, "framebuffer": framebuffer}
+    beauty = {"beauty_render": False} if "beauty_render" in origin.config else {}
+    return {**origin.config, "framebuffer": framebuffer, **beauty}

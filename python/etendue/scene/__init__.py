@@ -18,7 +18,7 @@ from ..film import Film, sample_ranges
 from ..film import aovs as film_aovs
 from ..film.origin import Origin
 from ..film.progressive import Progress, Steps, go_on
-from ..film.sample_ranges import Range
+from ..film.sample_ranges import Range, hull
 from . import beside
 
 if TYPE_CHECKING:
@@ -72,6 +72,7 @@ class Scene:
         checkpoint: Callable[[Film], object] | None = None,
         checkpoint_seconds: float = 30.0,
         aovs: Sequence[str] = (),
+        error: Callable[[float], object] | None = None,
         **parameters: Any,
     ) -> Film:
         """Render the scene.
@@ -81,7 +82,8 @@ class Scene:
         as the scene file says. threads: 0 for all cores; the image does not depend on it. time_limit: seconds
         after which the film is returned as far as it is (`film.complete` is false then).
         progress(fraction, samples_per_pixel): called about 20 times a second; an exception from it ends the
-        render and is raised.
+        render and is raised. error(estimate): called before it with the film's error (`Film.error`) where there is
+        an estimate.
 
         samples: instead of spp, the samples with the indices [first, end), or a range of step 1; films of
         different ones can be merged. resume: a film of this scene and these settings to go on from, which
@@ -89,18 +91,25 @@ class Scene:
         checkpoint(film): called every checkpoint_seconds with the film so far.
         aovs: names of `etendue.film.aovs.AOVS`, to be found in `film.aovs` afterwards.
 
+        A beauty render (beauty_render=True, here or in the scene file, and neither spp nor samples) adds samples,
+        worst tiles first, until the film's error is at most error_eps: docs/beauty-render.md.
+
         Ctrl-C returns the film with what is done and `film.interrupted` set, and raises KeyboardInterrupt
         only where nothing is done yet; a film that it ended has no AOVs of surfaces. Raises SceneError for a
         value that is not allowed, EtendueError for a name in `aovs` that is none, and for a film to resume that
         is of something else, with all that differs.
         """
         aovs = film_aovs.checked(aovs)
+        beauty = self._is_beauty(parameters, spp, samples)
         goal = self._goal(spp, samples, resume)
-        wanted = goal[1] - goal[0] if goal else None
+        if beauty:
+            goal = hull([] if resume is None else resume.ranges)
+        wanted = None if beauty or goal is None else goal[1] - goal[0]
         if wanted is not None and resume is not None:
             # A merged film may have more than a scene file can ask for.
             wanted = min(wanted, sample_ranges.MOST)
-        config = self._changed(wanted, size, algorithm, seed, parameters)
+        decided = {} if beauty == self.config.beauty_render else {"beauty_render": beauty}
+        config = self._changed(wanted, size, algorithm, seed, {**parameters, **decided})
         if threads < 0:
             raise EtendueError(f"threads: 0 or a number of threads is needed, not {threads}")
         if not checkpoint_seconds > 0:
@@ -118,9 +127,13 @@ class Scene:
         if film_aovs.from_source(aovs, "contributions"):
             start = beside.split(start, config.algorithm)
         start = dataclasses.replace(
-            start, goal=goal or (0, framebuffer.sppx), origin=origin, exposure=framebuffer.exposure
+            start,
+            goal=goal if goal is not None else (0, framebuffer.sppx),
+            bound=config.error_eps if beauty else None,
+            origin=origin,
+            exposure=framebuffer.exposure,
         )
-        steps = Steps(progress, checkpoint, checkpoint_seconds, time_limit)
+        steps = Steps(progress, error, checkpoint, checkpoint_seconds, time_limit)
         film = go_on(start, lambda first: self._renderer(config, threads, first), steps)
         if film.interrupted and film.samples == 0:
             raise KeyboardInterrupt
@@ -246,6 +259,15 @@ class Scene:
         origin.require_same(film.origin, "the film is of another scene", "here", "in the film")
         return config
 
+    def _is_beauty(self, parameters: dict[str, Any], spp: int | None, samples: Sequence[int] | None) -> bool:
+        """Whether the error decides how many samples there will be. What is asked for here counts first."""
+        given = "spp" if spp is not None else "samples" if samples is not None else None
+        if given is None:
+            return bool(parameters.get("beauty_render", self.config.beauty_render))
+        if parameters.get("beauty_render"):
+            raise EtendueError(f"render: beauty_render and {given} exclude each other")
+        return False
+
     def _goal(self, spp: int | None, samples: Sequence[int] | None, resume: Film | None) -> Range | None:
         """The range of samples to reach; None: what the scene file says."""
         if samples is not None:
@@ -271,7 +293,7 @@ class Scene:
                 config.filter,
                 config.seed,
                 threads,
-                first_sample,
+                first_sample % 2**64,
             )
         except ValueError as error:
             raise EtendueError(str(error)) from error

@@ -76,7 +76,8 @@ def tonemap(
             "--false-colour",
             metavar="NAME",
             autocompletion=_quantity_names,
-            help="Instead of the image, show its variance, relative-error or samples in false colours.",
+            help="Instead of the image, show its variance, relative-error, tile-error or samples in false "
+            "colours.",
         ),
     ] = None,
     scale: Annotated[

@@ -49,6 +49,14 @@ def render(
     spp: Annotated[
         int | None, typer.Option("--spp", metavar="N", help="Samples per pixel (framebuffer.sppx).")
     ] = None,
+    beauty: Annotated[
+        bool,
+        typer.Option(
+            "--beauty",
+            help="Beauty render: add samples, worst tiles first, until the error is below error_eps "
+            "(beauty_render).",
+        ),
+    ] = False,
     time: Annotated[
         float | None,
         typer.Option(
@@ -135,8 +143,22 @@ def render(
             "Biased.",
         ),
     ] = False,
+    sample_map: Annotated[
+        Path | None,
+        typer.Option(
+            "--sample-map",
+            metavar="FILE",
+            help="Also write how many samples each pixel has, in false colours (.png, .jpg).",
+        ),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object about the render on the standard output.")
+    ] = False,
+    json_progress: Annotated[
+        bool,
+        typer.Option(
+            "--json-progress", help="Progress and messages as one JSON object a line on the standard error."
+        ),
     ] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="No progress and no messages but errors.")
@@ -162,7 +184,10 @@ def render(
     if samples is not None and (spp is not None or resume is not None):
         other = "--spp" if spp is not None else "--resume"
         raise EtendueError(f"--samples: excludes {other}; films of other samples are put together by merge")
-    overrides = render_command.overrides_of(algorithm, spp, size, seed, settings or [])
+    if beauty and (spp is not None or samples is not None):
+        other = "--spp" if spp is not None else "--samples"
+        raise EtendueError(f"--beauty: excludes {other}; the error decides how many samples there will be")
+    overrides = render_command.overrides_of(algorithm, spp, size, seed, settings or [], beauty)
     job = render_command.Job(
         config,
         overrides,
@@ -179,6 +204,8 @@ def render(
         None if samples is None else sample_ranges.parse(samples),
         aovs=[name.strip() for names in aov or () for name in names.split(",")],
         denoise=denoise,
+        sample_map=sample_map,
+        json_progress=json_progress,
     )
     code = render_command.run(job)
     if code:
