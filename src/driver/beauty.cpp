@@ -61,7 +61,9 @@ double samples_at(std::span<const TileError> tiles, const Tiles& shape, double b
     std::vector<double> needs(tiles.size());
     std::ranges::transform(tiles, needs.begin(), [&](const TileError& tile) {
         const double excess = std::isfinite(tile.error) ? tile.error / bound : 1;
-        return static_cast<double>(tile.most) * std::max(excess * excess, 1.0);
+        if (excess <= 1) return static_cast<double>(tile.most);
+        const double need = std::min(static_cast<double>(tile.most) * excess * excess, 0x1p62);
+        return static_cast<double>(stage_beyond(static_cast<uint64_t>(std::ceil(need)) - 1));
     });
     std::vector<double> sorted = needs;
     const auto last_within = sorted.begin() + static_cast<ptrdiff_t>(tiles_within(sorted.size())) - 1;

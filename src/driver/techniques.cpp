@@ -1,6 +1,7 @@
 #include "driver/techniques.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "driver/tiles.h"
 

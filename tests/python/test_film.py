@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import errno
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -322,6 +323,32 @@ def test_one_sample_counts_after_a_million(shared_scene: Scene) -> None:
     np.testing.assert_array_equal(after.sum, total + sample.sum)
     assert (after.sum > total)[sample.sum > 0].all()
     assert (after.sample_count == many + 1).all()
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="needs Linux")
+@pytest.mark.parametrize("beauty", [False, True])
+def test_long_renders_take_no_more_memory_than_short_ones(
+    shared_scene: Scene, tmp_path: Path, beauty: bool
+) -> None:
+    used: list[int] = []
+
+    def checkpoint(film: Film) -> None:
+        film.write(tmp_path / "a.exr")
+        used.append(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
+        if len(used) == 120:
+            raise KeyboardInterrupt
+
+    kind: dict[str, Any] = {"beauty_render": True, "error_eps": 1e-9} if beauty else {"spp": 10**9}
+    film = shared_scene.render(
+        size=(32, 32),
+        checkpoint=checkpoint,
+        checkpoint_seconds=0.01,
+        threads=2,
+        **kind,
+    )
+    assert film.interrupted
+    # Every other checkpoint's 200 kB would be 8 MB.
+    assert max(used[100:]) - max(used[20:40]) < 3e6
 
 
 def test_counts_and_indices_beyond_32_bits(shared_scene: Scene, tmp_path: Path) -> None:

@@ -67,6 +67,7 @@ void watch(const Renderer& renderer, const std::atomic<bool>& done) {
     while (!done) {
         seen += renderer.samples_done() + renderer.rays() + renderer.invalid_count();
         seen += renderer.invalid_samples().size() + (renderer.seconds() > 0);
+        seen += renderer.error() > 0 && renderer.samples_expected() >= 0;
         renderer.read([&](const Tile& tile, const Film& film) {
             seen += film.pixels()[size_t{tile.y0} * film.width() + tile.x0].count;
         });
@@ -74,12 +75,17 @@ void watch(const Renderer& renderer, const std::atomic<bool>& done) {
     require(seen > 0, "a watched render reports something");
 }
 
-void watched(Renderer& renderer, uint64_t samples) {
+template <class Render>
+void watched(const Renderer& renderer, const Render& render) {
     std::atomic<bool> done = false;
     std::thread watcher([&] { watch(renderer, done); });
-    require(renderer.render(samples), "an undisturbed render is complete");
+    require(render(), "an undisturbed render is complete");
     done = true;
     watcher.join();
+}
+
+void watched(Renderer& renderer, uint64_t samples) {
+    watched(renderer, [&] { return renderer.render(samples); });
 }
 
 }  // namespace
@@ -96,6 +102,11 @@ int main() {
         require(coarse->render_coarse(stride), "coarse passes are complete");
     watched(*coarse, 12);
     require(same(*one, *coarse), "coarse passes do not change the picture");
+
+    const auto beauty = renderer(scene, 1), beauty_of_three = renderer(scene, 3);
+    require(beauty->render_until(0.2), "a beauty render keeps its bound");
+    watched(*beauty_of_three, [&] { return beauty_of_three->render_until(0.2); });
+    require(same(*beauty, *beauty_of_three), "threads do not change a beauty render");
 
     const auto cancelled = renderer(scene, 3);
     std::thread stopper([&] {
