@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from imgui_bundle import IM_COL32, imgui, immvision
 
+from ..display import false_colour
 from . import inspector
 from .navigation import angles_of_drag, turned
 from .pictures import Picture
@@ -14,6 +16,7 @@ from .viewer import Viewer
 
 _CLICK, _GRIP = 4.0, 8.0  # pixels
 _WHEEL = 1.15
+_SCALE_WIDTH, _SCALE_STEPS = 120.0, 30
 
 
 class Texture:
@@ -96,6 +99,9 @@ class Canvas:
         if split is not None:
             self._textures[1].draw(corner, size, (part, 1), resolution)
             self._draw_line(viewer, corner, size)
+        picture = self._textures[0].picture
+        if picture is not None and picture.scale is not None:
+            _draw_scale(picture.scale, (corner[0] + size[0], corner[1] + size[1]))
         if viewer.inspecting:
             inspector.draw_over(viewer, corner, scale)
         self._follow(viewer, corner, size, scale)
@@ -150,3 +156,21 @@ class Canvas:
             camera = viewer.document.config.camera
             turn = angles_of_drag(camera, (io.mouse_delta.x, io.mouse_delta.y), size[1])
             viewer.attempt(lambda: viewer.document.set(turned(camera, *turn), gesture="look"))
+
+
+def _draw_scale(scale: tuple[float, float], corner: tuple[float, float]) -> None:
+    """The false colours between their lowest and highest value, left of and above a corner."""
+    lines, line = imgui.get_window_draw_list(), imgui.get_font_size()
+    low, high = scale
+    texts = f"{low:.3g}", f"{high:.3g}"
+    widths = [imgui.calc_text_size(text).x for text in texts]
+    right, bottom = corner[0] - 14, corner[1] - 12
+    left = right - widths[0] - widths[1] - _SCALE_WIDTH - 16
+    lines.add_rect_filled((left - 8, bottom - line - 6), (right + 8, bottom + 6), IM_COL32(0, 0, 0, 190), 4)
+    lines.add_text((left, bottom - line), IM_COL32(255, 255, 255, 230), texts[0])
+    lines.add_text((right - widths[1], bottom - line), IM_COL32(255, 255, 255, 230), texts[1])
+    colours = false_colour.coloured(np.linspace(1, 2, _SCALE_STEPS), (1, 2))
+    start, step = left + widths[0] + 8, _SCALE_WIDTH / _SCALE_STEPS
+    for index, (red, green, blue) in enumerate(colours.tolist()):
+        x = start + index * step
+        lines.add_rect_filled((x, bottom - line + 2), (x + step, bottom - 2), IM_COL32(red, green, blue, 255))

@@ -7,7 +7,8 @@ from imgui_bundle import imgui, implot
 
 from .viewer import Viewer
 
-_TICKS = [digit * 10.0**power for power in range(-5, 3) for digit in (1, 2, 5)]
+# Within a decade, too, as an error rarely falls by more.
+_TICKS = [digit * 10.0**power for power in range(-5, 6) for digit in (1, 1.5, 2, 3, 5, 7)]
 
 
 def draw(viewer: Viewer) -> None:
@@ -19,7 +20,9 @@ def draw(viewer: Viewer) -> None:
             implot.setup_axes("seconds of rendering", "relative error", flags, flags)
             implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
             implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
+            implot.setup_axis_ticks(implot.ImAxis_.x1, _TICKS, [f"{tick:g}" for tick in _TICKS])
             implot.setup_axis_ticks(implot.ImAxis_.y1, _TICKS, [f"{100 * tick:g}%" for tick in _TICKS])
+            implot.setup_legend(implot.Location_.north_east)
             for side, session in zip(("left", "right"), viewer.sessions, strict=False):
                 points, scene = session.errors, session.scene
                 if points and scene is not None:

@@ -34,7 +34,7 @@ _INTERVAL, _DUTY = 0.1, 4.0
 _ERROR_INTERVAL = 1.0
 # A first pass may take this long.
 _FIRST = 0.04
-_NICE = 5
+_NICE = 3
 
 
 class State(Enum):
