@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -12,12 +14,13 @@ import numpy as np
 import pytest
 
 import etendue
-from etendue.errors import SceneError
+from etendue.errors import EtendueError, SceneError
 from etendue.viewer.document import Document
 from etendue.viewer.history import History
 from etendue.viewer.pictures import Look
 from etendue.viewer.scenes import Scenes
 from etendue.viewer.session import Session, State, Status
+from etendue.viewer.viewer import Viewer
 
 pytestmark = pytest.mark.usefixtures("lit_scene")
 
@@ -199,3 +202,27 @@ def test_saving_elsewhere_keeps_the_files(tmp_path: Path) -> None:
     bundled = Document(etendue.Config.from_data({"scene": {"mesh_files": ["mis.obj"]}}))
     bundled.save(folder / "bundled.json")
     assert json.loads((folder / "bundled.json").read_text())["scene"]["mesh_files"] == ["mis.obj"]
+
+
+def test_the_camera_goes_to_the_clipboard_and_back() -> None:
+    viewer = Viewer(["lit.json"])
+    try:
+        text = viewer.copied_camera()
+        start = viewer.document.config.camera
+        viewer.document.set({("camera", "fov"): 33.0, ("camera", "pos"): [1, 2, 3]})
+        viewer.paste_camera(text)
+        assert viewer.document.config.camera == start
+        viewer.paste_camera(json.dumps({"pos": [4, 5, 6]}))
+        assert viewer.document.config.camera.pos == (4, 5, 6)
+        for wrong in ("", "[1]", "pos"):
+            with pytest.raises(EtendueError, match="no camera"):
+                viewer.paste_camera(wrong)
+        with pytest.raises(EtendueError, match="fov"):
+            viewer.paste_camera(json.dumps({"fov": -3}))
+    finally:
+        viewer.close()
+
+
+def test_nothing_but_the_window_needs_the_extra() -> None:
+    code = "import sys, etendue.cli.commands, etendue.viewer.viewer; sys.exit('imgui_bundle' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)

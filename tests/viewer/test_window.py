@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import threading
 from collections.abc import Callable
 from pathlib import Path
 
+import glfw
 import numpy as np
 import pytest
 from imgui_bundle import imgui
+from imgui_bundle.glfw_utils import glfw_window_hello_imgui
 
 from etendue.cli import main
 from etendue.display.views import VIEWS
+from etendue.film import save_pixels
 from etendue.loaders.image import load_image
 from etendue.viewer.pictures import MODES
 from etendue.viewer.session import State
@@ -229,6 +233,36 @@ def test_a_scene_that_cannot_be_loaded_is_told(lit_scene: Callable[..., None]) -
     drive(viewer, steps)
 
 
+def test_dropped_files() -> None:
+    viewer = Viewer(overrides=BIG)
+    sky = np.ones((2, 4, 3), np.float32)
+    save_pixels(Path("sky.hdr"), sky, {})
+
+    def steps(hand: Hand) -> None:
+        hand.wait_for_picture()
+        # The callback that the window has given to GLFW, as the desktop would call it.
+        window = glfw_window_hello_imgui()
+        received = glfw.set_drop_callback(window, None)
+
+        def drop(*names: str) -> None:
+            paths = (ctypes.c_char_p * len(names))(*(name.encode() for name in names))
+            received(window, len(names), paths)
+
+        drop("lit.json")
+        assert viewer.document.config.path == Path("lit.json")
+        drop("sky.hdr", "lit.obj")
+        scene = viewer.document.config.scene
+        assert scene.sky is not None
+        assert Path(scene.sky.envmap or "").name == "sky.hdr"
+        assert [Path(name).name for name in scene.mesh_files] == ["lit.obj", "lit.obj"]
+        hand.wait_for_picture()
+        drop("missing.obj")
+        assert viewer.message is not None
+        assert "no such file" in viewer.message[0]
+
+    drive(viewer, steps)
+
+
 def run(*arguments: str) -> int:
     with pytest.raises(SystemExit) as ended:
         main(["view", *arguments])
@@ -240,6 +274,8 @@ def test_screenshots() -> None:
     pixels = load_image(Path("shot.png"), "colour").pixels
     assert pixels.shape[:2] == (800, 1280)
     assert np.ptp(pixels[100:600, 500:1000]) > 50
+    assert run("--screenshot", "empty.png", "--after", "0") == 0
+    assert Path("empty.png").is_file()
 
 
 def test_without_a_display(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
