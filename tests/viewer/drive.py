@@ -9,7 +9,7 @@ from typing import Any
 
 from imgui_bundle.imgui import test_engine
 
-from etendue.viewer.session import State
+from etendue.viewer.status import State
 from etendue.viewer.viewer import Viewer
 from etendue.viewer.window import Window
 

@@ -19,7 +19,8 @@ from etendue.viewer.document import Document
 from etendue.viewer.history import History
 from etendue.viewer.pictures import Look
 from etendue.viewer.scenes import Scenes
-from etendue.viewer.session import Session, State, Status
+from etendue.viewer.session import Session
+from etendue.viewer.status import State, Status
 from etendue.viewer.viewer import Viewer
 
 pytestmark = pytest.mark.usefixtures("lit_scene")

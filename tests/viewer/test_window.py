@@ -19,7 +19,7 @@ from etendue.display.views import VIEWS
 from etendue.film import save_pixels
 from etendue.loaders.image import load_image
 from etendue.viewer.pictures import MODES
-from etendue.viewer.session import State
+from etendue.viewer.status import State
 from etendue.viewer.viewer import Viewer
 
 from .drive import Hand, drive

@@ -6,7 +6,7 @@ from imgui_bundle import imgui
 
 from ..cli.words import clock, si
 from .pages import PAGES
-from .session import State, Status
+from .status import State, Status
 from .viewer import Viewer
 
 

@@ -12,22 +12,18 @@ import os
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from enum import Enum
-from functools import partial
 from typing import Any
-
-from numpy.typing import NDArray
 
 from .. import _core
 from ..config import Config
 from ..errors import EtendueError
 from ..film import Film
-from ..film.progressive import grown
 from ..scene import Scene
 from .errors import relative_error
+from .live import Live
 from .pictures import MOST_COARSE, Look, Picture, Source, Stale, develop
 from .scenes import Scenes
+from .status import State, Status
 
 # Shortest time between two pictures, and how long after one as many times its cost.
 _INTERVAL, _DUTY = 0.1, 4.0
@@ -35,70 +31,6 @@ _ERROR_INTERVAL = 1.0
 # A first pass may take this long.
 _FIRST = 0.04
 _NICE = 3
-
-
-class State(Enum):
-    """What a session is doing."""
-
-    LOADING = "loading"
-    RENDERING = "rendering"
-    PAUSED = "paused"
-    ABORTED = "aborted"
-    DONE = "done"
-    FAILED = "failed"
-
-
-@dataclass(frozen=True)
-class Status:
-    """How far a render is. `seconds` is time spent rendering; rates are means over it.
-
-    error: estimate of the relative error; None: not known yet. eta: seconds until it is done.
-    problem: why there is nothing to render.
-    """
-
-    state: State = State.LOADING
-    spp: float = 0.0
-    goal: int = 0
-    samples_per_second: float = 0.0
-    rays_per_second: float = 0.0
-    error: float | None = None
-    seconds: float = 0.0
-    eta: float | None = None
-    problem: str | None = None
-
-    @property
-    def percent(self) -> int:
-        """100 when all is done, and not before."""
-        if self.state is State.DONE:
-            return 100
-        return min(math.floor(100 * self.spp / self.goal), 99) if self.goal else 0
-
-
-@dataclass
-class _Live:
-    """A scene on its way to a film. stride: of the last finished pass; 0: none yet."""
-
-    scene: Scene
-    renderer: _core.Renderer
-    film: Film
-    stride: int = 0
-    seconds: float = 0.0
-    since: float | None = None
-    errors: list[tuple[float, float]] = field(default_factory=list)
-    surfaces: dict[str, NDArray[Any]] = field(default_factory=dict)
-
-    @property
-    def clock(self) -> float:
-        """Seconds spent rendering."""
-        since = self.since
-        return self.seconds + (0 if since is None else time.monotonic() - since)
-
-    def step(self, work: Callable[[], bool]) -> bool:
-        self.since = time.monotonic()
-        try:
-            return work()
-        finally:
-            self.seconds, self.since = self.clock, None
 
 
 def _is_same(one: Config, other: Config) -> bool:
@@ -128,7 +60,7 @@ class Session:
         self._state = State.LOADING
         self._problem: str | None = None
         self._paused = self._aborted = self._closed = False
-        self._live: _Live | None = None
+        self._live: Live | None = None
         self._look = Look()
         self._undeveloped = False
         self._picture: Picture | None = None
@@ -219,11 +151,7 @@ class Session:
     def film(self) -> Film | None:
         """The film as it is now; None: nothing is rendered yet."""
         live = self._live
-        if live is None:
-            return None
-        film = grown(live.film, live.film.goal, live.renderer)
-        film.seconds = live.clock
-        return film
+        return None if live is None else live.taken()
 
     @property
     def status(self) -> Status:
@@ -233,22 +161,7 @@ class Session:
         live = self._live
         if live is None:
             return Status(self._state, problem=self._problem)
-        framebuffer = live.scene.config.framebuffer
-        pixels, seconds = framebuffer.res_w * framebuffer.res_h, live.clock
-        samples = live.renderer.samples_done
-        missing = pixels * framebuffer.sppx - samples
-        rate = samples / seconds if seconds > 0 else 0.0
-        return Status(
-            self._state,
-            samples / pixels,
-            framebuffer.sppx,
-            rate,
-            live.renderer.rays / seconds if seconds > 0 else 0.0,
-            live.errors[-1][1] if live.errors else None,
-            seconds,
-            missing / rate if rate > 0 and self._state is State.RENDERING else None,
-            self._problem,
-        )
+        return live.status(self._state, self._problem)
 
     def close(self) -> None:
         """End the threads; returns once they have."""
@@ -304,7 +217,7 @@ class Session:
         else:
             self._finish(version, State.LOADING)
             scene = self._scenes.get(config)
-            live = _Live(scene, scene.renderer(self._threads), scene.empty_film())
+            live = Live(scene, scene.renderer(self._threads), scene.empty_film())
             stride = self._first_stride(config)
             before = time.monotonic()
             live.step(lambda: live.renderer.render_coarse(stride))
@@ -324,7 +237,7 @@ class Session:
         if self._step(version, live, lambda: live.renderer.render(config.framebuffer.sppx)):
             self._finish(version, State.DONE)
 
-    def _goes_on(self, live: _Live, version: int, config: Config) -> bool:
+    def _goes_on(self, live: Live, version: int, config: Config) -> bool:
         """Whether what is there is part of what is wanted."""
         if self._fresh == version or _of_samples(live.scene.config) != _of_samples(config):
             return False
@@ -337,12 +250,12 @@ class Session:
             stride *= 2
         return stride
 
-    def _advanced(self, live: _Live, stride: int) -> None:
+    def _advanced(self, live: Live, stride: int) -> None:
         live.stride = stride
         self._undeveloped = True
         self._changed.notify_all()
 
-    def _step(self, version: int, live: _Live, work: Callable[[], bool]) -> bool:
+    def _step(self, version: int, live: Live, work: Callable[[], bool]) -> bool:
         """Does a part of the render, through all pauses. False where something else is wanted."""
         while True:
             with self._changed:
@@ -388,10 +301,9 @@ class Session:
                 next_error = time.monotonic() + max(_ERROR_INTERVAL, _DUTY * took)
             wait = max(_INTERVAL, _DUTY * cost)
 
-    def _source(self, live: _Live, look: Look, stride: int) -> Source:
+    def _source(self, live: Live, look: Look, stride: int) -> Source:
         def go_on(_: float) -> None:
             if self._closed or self._live is not live or self._look != look:
                 raise Stale
 
-        film = partial(grown, live.film, live.film.goal, live.renderer)
-        return Source(live.scene, live.renderer, stride, film, live.surfaces, go_on)
+        return Source(live.scene, live.renderer, stride, live.taken, live.surfaces, go_on)

@@ -26,8 +26,9 @@ from .document import Document
 from .navigation import unit
 from .pictures import Look
 from .scenes import Scenes
-from .session import Session, State
+from .session import Session
 from .split import Split
+from .status import State
 
 MESHES = (".obj", ".ply", ".stl", ".gltf", ".glb")
 IMAGES = (".hdr", ".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff")

@@ -17,7 +17,7 @@ from . import bars, dialog, inspector, keys, plot, style
 from .canvas import Canvas
 from .dropping import on_drop
 from .pages import PAGES
-from .session import State
+from .status import State
 from .viewer import Viewer
 
 SIZE = (1280, 800)

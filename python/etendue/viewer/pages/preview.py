@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from ...display.views import VIEWS
 from ..pictures import MODES
-from ..session import State
+from ..status import State
 from ..viewer import Viewer
 from ..widgets import buttons, control, field, tooltip
 
