@@ -76,7 +76,7 @@ void watch(const Renderer& renderer, const std::atomic<bool>& done) {
 }
 
 template <class Render>
-void watched(const Renderer& renderer, const Render& render) {
+void watch_while(const Renderer& renderer, const Render& render) {
     std::atomic<bool> done = false;
     std::thread watcher([&] { watch(renderer, done); });
     require(render(), "an undisturbed render is complete");
@@ -85,7 +85,7 @@ void watched(const Renderer& renderer, const Render& render) {
 }
 
 void watched(Renderer& renderer, uint64_t samples) {
-    watched(renderer, [&] { return renderer.render(samples); });
+    watch_while(renderer, [&] { return renderer.render(samples); });
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ int main() {
 
     const auto beauty = renderer(scene, 1), beauty_of_three = renderer(scene, 3);
     require(beauty->render_until(0.2), "a beauty render keeps its bound");
-    watched(*beauty_of_three, [&] { return beauty_of_three->render_until(0.2); });
+    watch_while(*beauty_of_three, [&] { return beauty_of_three->render_until(0.2); });
     require(same(*beauty, *beauty_of_three), "threads do not change a beauty render");
 
     const auto cancelled = renderer(scene, 3);
