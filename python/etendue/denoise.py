@@ -7,6 +7,7 @@ denoised unless it was asked for, and what is denoised says so.
 from __future__ import annotations
 
 import dataclasses
+import importlib.util
 import shlex
 import sys
 from collections.abc import Callable
@@ -37,6 +38,11 @@ class Denoised(NamedTuple):
 def require() -> None:
     """EtendueError with the command that installs the library, where it is not there."""
     _library()
+
+
+def is_installed() -> bool:
+    """Whether the library is there, without loading it."""
+    return importlib.util.find_spec("mitsuba_oidn") is not None
 
 
 def _library() -> ModuleType:

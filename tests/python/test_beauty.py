@@ -266,8 +266,11 @@ class Run(NamedTuple):
 
 
 @pytest.fixture
-def run(capsys: pytest.CaptureFixture[str], lit_scene: WriteScene) -> Callable[[str], Run]:
+def run(
+    capsys: pytest.CaptureFixture[str], lit_scene: WriteScene, monkeypatch: pytest.MonkeyPatch
+) -> Callable[[str], Run]:
     lit_scene(framebuffer={"res_w": 48, "res_h": 32})
+    monkeypatch.setattr("etendue.denoise.is_installed", lambda: False)
 
     def run(line: str) -> Run:
         capsys.readouterr()

@@ -219,6 +219,20 @@ def test_the_command_writes_both(scene: Scene, run: Callable[[str], Run]) -> Non
     assert Path("a.film.exr").read_bytes() == before
 
 
+def test_beauty_renders_are_denoised_where_there_is_a_denoiser(
+    run: Callable[[str], Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    beauty = "render lit.json --beauty --set error_eps=0.5 -q -o"
+    assert run(f"{beauty} a.png").code == 0
+    assert description("a.png") == ""
+    assert "biased" in description("a.denoised.png")
+    assert run(f"{beauty} b.png --no-denoise").code == 0
+    monkeypatch.setattr("etendue.denoise.is_installed", lambda: False)
+    assert run(f"{beauty} c.png") == Run(0, "", "")
+    assert Path("c.png").exists()
+    assert [path.name for path in Path().glob("*.denoised.*")] == ["a.denoised.png"]
+
+
 def test_the_command_refuses(run: Callable[[str], Run]) -> None:
     assert run("render lit.json --film a.film.exr -o a.exr -q").code == 0
     before = {path: path.read_bytes() for path in Path().iterdir()}

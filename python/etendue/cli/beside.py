@@ -41,15 +41,20 @@ class Wanted(NamedTuple):
         return aovs.from_source(self.names, "contributions")
 
 
-def wanted(names: Sequence[str], images: Sequence[Path], denoise: bool) -> Wanted:
-    """What --aov and --denoise ask for, where `images` are written; EtendueError where it cannot be had."""
+def wanted(names: Sequence[str], images: Sequence[Path], denoise: bool, if_installed: bool = False) -> Wanted:
+    """What --aov and --denoise ask for, where `images` are written; EtendueError where it cannot be had.
+
+    if_installed: without a denoiser there is no denoised image, and that is fine.
+    """
     checked = aovs.checked(names)
     if checked and not any(path.suffix.lower() == ".exr" for path in images):
         raise EtendueError("--aov: only EXR images have layers; -o NAME.exr names one")
     if not denoise:
         return Wanted(checked)
-    from ..denoise import require
+    from ..denoise import is_installed, require
 
+    if if_installed and not is_installed():
+        return Wanted(checked)
     require()
     beside = outputs.check(denoised_path(path) for path in images)
     if taken := [path for path in beside if path in images]:

@@ -47,7 +47,7 @@ class Job:
     spp: int | None = None
     samples: Range | None = None
     aovs: Sequence[str] = ()
-    denoise: bool = False
+    denoise: bool | None = None  # None: after a beauty render, where there is a denoiser
     sample_map: Path | None = None
     json_progress: bool = False
 
@@ -106,12 +106,15 @@ def _run(job: Job, interrupts: Interrupts) -> int:
     start = None if job.resume is None else film_file.read(job.resume)
     name = job.config.stem if job.config is not None else resuming.scene_name(start)
     paths = outputs.check(job.outputs or [f"{name}.exr" if job.aovs else f"{name}.png"])
-    wanted = beside.wanted(job.aovs, paths, job.denoise)
     if job.sample_map is not None:
         films.require_display(job.sample_map)
+    config, data_dirs = _config(job, start)
+    is_beauty = config.beauty_render and job.spp is None and job.samples is None
+    wanted = beside.wanted(
+        job.aovs, paths, is_beauty if job.denoise is None else job.denoise, job.denoise is None
+    )
     if job.film_path is not None:
         resuming.check_place(job.film_path, job.resume, [*paths, *wanted.denoised])
-    config, data_dirs = _config(job, start)
     memory.require(config, wanted.bytes_per_pixel)
     from .. import scene as scenes
 
@@ -122,7 +125,6 @@ def _run(job: Job, interrupts: Interrupts) -> int:
         job.say(f"warning: {warning}")
     if start is not None and job.resume is not None:
         resuming.require_same_scene(scene, start, job.resume)
-    is_beauty = config.beauty_render and job.spp is None and job.samples is None
     spp = None if is_beauty else _spp_wanted(job, config, start)
     job.say(_introduction(scene, spp, start))
     film = _render(job, scene, start, spp, wanted.kept_apart, interrupts)
@@ -138,10 +140,10 @@ def _run(job: Job, interrupts: Interrupts) -> int:
         _save(film, paths, denoised, wanted.denoised, job)
     stopped = film.interrupted or interrupts.by_signal
     interrupted = left_out is not None or (stopped and not film.complete)
-    for line in _closing(film, paths, job, interrupted):
-        job.say(line)
     if left_out is not None:
         job.say(f"interrupted before {left_out}")
+    for line in _closing(film, paths, job, interrupted):
+        job.say(line)
     if denoised is not None:
         job.say(f"{denoised.attributes['denoised']} (biased): {', '.join(map(str, wanted.denoised))}")
     if problem is not None:
@@ -277,7 +279,8 @@ def _command(job: Job) -> str:
     command = resuming.command(job.film_path, job.outputs, job.threads, job.checkpoint)
     layers = f" --sample-map {shlex.quote(str(job.sample_map))}" if job.sample_map is not None else ""
     layers += f" --aov {','.join(job.aovs)}" if job.aovs else ""
-    return f"{command}{layers}{' --denoise' if job.denoise else ''}"
+    denoise = {None: "", True: " --denoise", False: " --no-denoise"}[job.denoise]
+    return f"{command}{layers}{denoise}"
 
 
 def _beauty_report(film: Film, bound: float) -> str:

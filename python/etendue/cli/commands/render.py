@@ -136,13 +136,14 @@ def render(
         ),
     ] = None,
     denoise: Annotated[
-        bool,
+        bool | None,
         typer.Option(
-            "--denoise",
+            "--denoise/--no-denoise",
             help="Also write each image denoised by Open Image Denoise, as box.denoised.png beside box.png. "
-            "Biased.",
+            "Biased.  [default: after a beauty render, where the denoiser is installed]",
+            show_default=False,
         ),
-    ] = False,
+    ] = None,
     sample_map: Annotated[
         Path | None,
         typer.Option(
