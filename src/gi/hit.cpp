@@ -44,12 +44,12 @@ SurfaceHit::SurfaceHit(const Ray& ray, float distance, const Mesh& mesh, uint32_
     const bool is_flat = !mesh.facets[triangle].smooth && !material.normal_texture;
     frame = Frame(is_flat ? point.normal : shading_normal());
     wo_local = frame.to_local(wo);
-    surface = {material.albedo_texture ? material.albedo_texture->colour(uv()) : material.albedo,
-               material.ior,
-               material.roughness,
-               material.absorb,
-               material.coated,
-               front};
+    surface.albedo = material.albedo_texture ? material.albedo_texture->colour(uv()) : material.albedo;
+    surface.ior = material.ior;
+    surface.roughness = material.roughness;
+    surface.absorb = material.absorb;
+    surface.coated = material.coated;
+    surface.front = front;
 }
 
 vec3 SurfaceHit::shading_normal() const {
@@ -93,11 +93,12 @@ float SurfaceHit::pdf(const vec3& wi) const {
 }
 
 std::optional<BsdfSample> SurfaceHit::sample(float lobe, const vec2& u) const {
+    // One variable is what every path returns, so that it is never copied.
     auto sample = bsdf_sample(material->bsdf, surface, wo_local, lobe, u);
-    if (!sample) return std::nullopt;
+    if (!sample) return sample;
     const bool above = sample->wi.z > 0;
     sample->wi = frame.to_world(sample->wi);
-    if (above != (glm::dot(sample->wi, point.normal) > 0)) return std::nullopt;
+    if (above != (glm::dot(sample->wi, point.normal) > 0)) sample.reset();
     return sample;
 }
 

@@ -14,11 +14,12 @@ class Ggx {
     explicit Ggx(float alpha)
         : alpha2_(sqr(std::max(alpha, MIN_ALPHA))), alpha_(std::max(alpha, MIN_ALPHA)) {}
 
-    /// Density of normals h per projected area. Written in sin^2 = x^2 + y^2, which keeps narrow lobes'
-    /// digits.
+    /// Density of normals along h, of any length, per projected area. Written in sin^2 = x^2 + y^2, which
+    /// keeps narrow lobes' digits.
     float D(const vec3& h) const {
-        const float d = h.x * h.x + h.y * h.y + alpha2_ * h.z * h.z;
-        return alpha2_ / (PI * d * d);
+        const float xy = h.x * h.x + h.y * h.y, z2 = h.z * h.z;
+        const float length2_over_d = (xy + z2) / (xy + alpha2_ * z2);
+        return alpha2_ * INV_PI * sqr(length2_over_d);
     }
 
     /// Smith's masking of the side of `w`.
@@ -33,13 +34,13 @@ class Ggx {
     /// Reflectance but for Fresnel: D G2 / (4 cos cos).
     float reflection(const vec3& wo, const vec3& wi) const {
         const float o = wo.z, i = wi.z;
-        return D(half(wo, wi)) / (2 * (i * root(wo) + o * root(wi)));
+        return D(wo + wi) / (2 * (i * root(wo) + o * root(wi)));
     }
 
     /// Solid-angle pdf of `wi` mirrored at a visible normal: D G1(wo) / (4 cos_o). The Jacobian of mirroring,
     /// 1 / (4 wo.h), cancels the cosine of the visible normals' own pdf.
     float reflection_pdf(const vec3& wo, const vec3& wi) const {
-        return D(half(wo, wi)) / (2 * (wo.z + root(wo)));
+        return D(wo + wi) / (2 * (wo.z + root(wo)));
     }
 
     /// A normal visible from wo: in the frame where GGX is a hemisphere, a uniform point on the cap that

@@ -143,8 +143,8 @@ MUTANTS = (
     Mutant(
         "Jacobian of the half vector missing",
         "gi/microfacet.h",
-        "D(half(wo, wi)) / (2 * (wo.z + root(wo)))",
-        "D(half(wo, wi)) * 4 * glm::dot(wo, half(wo, wi)) / (2 * (wo.z + root(wo)))",
+        "D(wo + wi) / (2 * (wo.z + root(wo)))",
+        "D(wo + wi) * 4 * glm::dot(wo, half(wo, wi)) / (2 * (wo.z + root(wo)))",
         (BSDF,),
     ),
     Mutant(

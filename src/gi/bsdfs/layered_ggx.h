@@ -30,28 +30,34 @@ struct LayeredGgx : Bsdf {
     }
 
     static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi) {
-        if (wi.z <= 0) return vec3(0);
-        const float coat = fresnel_dielectric(wo.z, surface.ior);
-        return coat * Ggx(surface.roughness).reflection(wo, wi) * surface.tint() +
-               (1 - coat) * INV_PI * surface.albedo;
+        return wi.z > 0 ? f(surface, wo, wi, fresnel_dielectric(wo.z, surface.ior)) : vec3(0);
     }
 
     static float pdf(const Surface& surface, const vec3& wo, const vec3& wi) {
-        if (wi.z <= 0) return 0;
-        const float coat = fresnel_dielectric(wo.z, surface.ior);
-        return coat * Ggx(surface.roughness).reflection_pdf(wo, wi) +
-               (1 - coat) * cosine_hemisphere_pdf(wi.z);
+        return wi.z > 0 ? pdf(surface, wo, wi, fresnel_dielectric(wo.z, surface.ior)) : 0;
     }
 
     static std::optional<BsdfSample> sample(const Surface& surface, const vec3& wo, float lobe,
                                             const vec2& u) {
-        const Ggx ggx(surface.roughness);
-        const bool on_coat = lobe < fresnel_dielectric(wo.z, surface.ior);
-        const vec3 wi = on_coat ? Ggx::mirrored(wo, ggx.sample_visible(wo, u)) : cosine_hemisphere(u);
-        const float pdf_wi = pdf(surface, wo, wi);
+        const float coat = fresnel_dielectric(wo.z, surface.ior);
+        const bool on_coat = lobe < coat;
+        const vec3 wi =
+            on_coat ? Ggx::mirrored(wo, Ggx(surface.roughness).sample_visible(wo, u)) : cosine_hemisphere(u);
+        const float pdf_wi = wi.z > 0 ? pdf(surface, wo, wi, coat) : 0;
         if (pdf_wi <= 0) return std::nullopt;
         const uint8_t type = on_coat ? BRDF_GLOSSY : BRDF_DIFFUSE;
-        return BsdfSample{wi, f(surface, wo, wi) * wi.z / pdf_wi, pdf_wi, type};
+        return BsdfSample{wi, f(surface, wo, wi, coat) * wi.z / pdf_wi, pdf_wi, type};
+    }
+
+  private:
+    // Above the surface, with the reflectance of the coat at wo.
+    static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi, float coat) {
+        return coat * Ggx(surface.roughness).reflection(wo, wi) * surface.tint() +
+               (1 - coat) * INV_PI * surface.albedo;
+    }
+    static float pdf(const Surface& surface, const vec3& wo, const vec3& wi, float coat) {
+        return coat * Ggx(surface.roughness).reflection_pdf(wo, wi) +
+               (1 - coat) * cosine_hemisphere_pdf(wi.z);
     }
 };
 
