@@ -119,9 +119,14 @@ class World:
             return World(
                 about["name"],
                 meshes,
-                [Material(**m) for m in about["materials"]],
-                View(**about["view"]),
+                [Material(**_with_tuples(m)) for m in about["materials"]],
+                View(**_with_tuples(about["view"])),
                 about["edges"],
                 [file[f"texture{i}"] for i in range(about["textures"])],
                 file.get("sky"),
             )
+
+
+def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:
+    """JSON has no tuples."""
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in values.items()}
