@@ -39,6 +39,7 @@ class Result:
     mean_over_reference: float
     own_reference: bool
     speed_ratio: list[float] = field(default_factory=list)
+    processor_ratio: list[float] = field(default_factory=list)
     efficiency_ratio: list[float] = field(default_factory=list)
 
     def row(self) -> dict[str, Any]:
@@ -68,12 +69,14 @@ def compare(
     path = prepared(scene)
     world = World.read(path)
     running: list[Contestant] = []
-    fixed: dict[str, float] = {}
+    # Seconds, and those of the processor.
+    fixed: dict[str, tuple[float, float]] = {}
     for name in names:
         try:
             contestant = Contestant(name, path, size, threads, options)
             contestant.render(1, 900)
-            fixed[name] = min(contestant.render(1, 901 + i)[0] for i in range(2))
+            calls = [contestant.render(1, 901 + i)[:2] for i in range(2)]
+            fixed[name] = min(call[0] for call in calls), min(call[1] for call in calls)
         except Absent as absent:
             say(f"{scene}: without {absent}")
             continue
@@ -86,9 +89,9 @@ def compare(
         # Another goes first each time.
         for contestant in running[repeat % len(running) :] + running[: repeat % len(running)]:
             taken, taken_cpu, image = contestant.render(spp, repeat + 1)
-            net = max(taken - fixed[contestant.name], 1e-3) * spp / (spp - 1)
-            seconds[contestant.name].append(net)
-            cpu[contestant.name].append(taken_cpu)
+            wall, processor = fixed[contestant.name]
+            seconds[contestant.name].append(max(taken - wall, 1e-3) * spp / (spp - 1))
+            cpu[contestant.name].append(max(taken_cpu - processor, 1e-3) * spp / (spp - 1))
             images[contestant.name].append(image)
             say(f"{scene}: {repeat + 1}/{repeats} {contestant.name} {taken:.2f} s")
     results = []
@@ -122,6 +125,8 @@ def compare(
     for result in results if ours is not None else []:
         assert ours is not None
         result.speed_ratio = [t / o for t, o in zip(result.seconds, ours.seconds, strict=True)]
+        cpu_pairs = zip(result.cpu_seconds, ours.cpu_seconds, strict=True)
+        result.processor_ratio = [t / o for t, o in cpu_pairs]
         error_ratio = result.rel_mse / ours.rel_mse
         result.efficiency_ratio = [error_ratio * r for r in result.speed_ratio]
     return results
@@ -137,8 +142,8 @@ def table(results: Sequence[Result]) -> str:
 
     lines = [
         "| scene | renderer | Msamples/s | Mrays/s | build s | peak MB | relMSE | trimmed | 1/(relMSE s) "
-        "| mean | Étendue's speed over it | efficiency |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|",
+        "| mean | Étendue's speed over it | by processor seconds | efficiency |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for r in results:
         rays = "-" if r.rays_per_second is None else f"{r.rays_per_second / 1e6:.2f}"
@@ -147,7 +152,7 @@ def table(results: Sequence[Result]) -> str:
             f"| {r.scene} | {r.name} | {statistics.median(r.samples_per_second) / 1e6:.3f} | {rays} "
             f"| {r.build_seconds:.2f} | {r.peak_mb:.0f} | {r.rel_mse:.3g}{star} | {r.rel_mse_trimmed:.3g} "
             f"| {r.efficiency:.3g} | {r.mean_over_reference:.3f} | {spread(r.speed_ratio)} "
-            f"| {spread(r.efficiency_ratio)} |"
+            f"| {spread(r.processor_ratio)} | {spread(r.efficiency_ratio)} |"
         )
     if any(r.own_reference for r in results):
         lines.append(
