@@ -28,7 +28,7 @@ def draw(viewer: Viewer) -> None:
             lambda: viewer.ask("Add mesh", "", MESHES, viewer.add_mesh),
         ),
         (
-            "Add environment",
+            "Add envmap",
             "Light the scene by an equirectangular image.",
             lambda: viewer.ask("Add environment map", "", IMAGES, viewer.set_environment),
         ),
