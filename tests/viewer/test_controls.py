@@ -80,9 +80,10 @@ def move_all(hand: Hand) -> None:
 
     hand.open("Settings")
     for loc, label in LABELS.items():
-        if loc != ("beauty_render",):  # it ends where the noise does
-            once("Settings", label, loc)
-    moved.add(("beauty_render",))
+        once("Settings", label, loc)
+        if loc == ("beauty_render",):  # two samples are compared below
+            hand.click(hand.place("Settings", f"##{label}"))
+            assert not document.config.beauty_render
     for key in document.keys_of():
         if key in ("mis", "sampling", "sampler", "filter", "seed", "max_light_path_length"):
             once("Settings", key, (key,))

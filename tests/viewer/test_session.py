@@ -153,10 +153,32 @@ def test_pictures(session: Session) -> None:
     assert session.take_trouble() is None
 
 
-@pytest.mark.parametrize(("spp", "percent"), [(0, 0), (0.5, 0), (99.999, 99), (100, 99)])
-def test_progress_is_not_100_before_the_end(spp: float, percent: int) -> None:
-    assert Status(State.RENDERING, spp, 100).percent == percent
-    assert Status(State.DONE, 100, 100).percent == 100
+@pytest.mark.parametrize(("fraction", "percent"), [(0, 0), (0.005, 0), (0.99999, 99), (1, 99)])
+def test_progress_is_not_100_before_the_end(fraction: float, percent: int) -> None:
+    assert Status(State.RENDERING, fraction=fraction).percent == percent
+    assert Status(State.DONE, fraction=1).percent == 100
+
+
+def test_a_beauty_render_is_that_of_the_library(session: Session) -> None:
+    shown = document(res_w=48, res_h=32)
+    shown.set({("beauty_render",): True, ("error_eps",): 0.05})
+    session.show(shown.config)
+    wait(lambda: session.status.state is State.DONE)
+    assert session.status.goal is None
+    assert 0 < (session.status.error or 0) <= 0.05
+    assert session.errors
+    ours, theirs = session.film(), etendue.load(shown.config).render()
+    assert ours is not None
+    assert ours.complete
+    assert np.array_equal(ours.sample_count, theirs.sample_count)
+    assert np.array_equal(ours.sum, theirs.sum)
+    for changes in ({("error_eps",): 0.03}, {("beauty_render",): False}):
+        shown.set(changes)
+        session.show(shown.config)
+        wait(lambda: session.status.state is State.DONE and session.scene.config.data == shown.config.data)  # type: ignore[union-attr]
+        film = session.film()
+        assert film is not None
+        assert np.array_equal(film.sum, etendue.load(shown.config).render().sum)
 
 
 def test_history() -> None:

@@ -111,17 +111,11 @@ def _beauty(
     first = sample_ranges.hull(film.held)[0]
     renderer = _renderer(film, renderer_from, first)
     before = dataclasses.replace(film, ranges=[], partial=None)
-
-    def so_far() -> Film:
-        now = grown(before, (first, first), renderer)
-        now.goal, now.complete = sample_ranges.hull(now.ranges), False
-        return now
-
     film, film.complete = _in_steps(
         lambda seconds: renderer.render_until(
             bound, lambda fraction, spp: steps.report(renderer, fraction, spp), seconds
         ),
-        so_far,
+        lambda: grown_beauty(before, first, renderer),
         steps,
         deadline,
     )
@@ -179,3 +173,10 @@ def grown(film: Film, piece: Range, renderer: Renderer) -> Film:
     result.complete = result.missing == 0
     result.attributes = attributes_of(result)
     return result
+
+
+def grown_beauty(film: Film, first: int, renderer: Renderer) -> Film:
+    """The same of a beauty render, whose samples begin at the index `first`, of a film without ranges."""
+    now = grown(film, (first, first), renderer)
+    now.goal, now.complete = sample_ranges.hull(now.ranges), False
+    return now

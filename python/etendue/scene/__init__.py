@@ -180,7 +180,11 @@ class Scene:
         origin = Origin.of(self.config, self.contents, self.data_dirs)
         film = Film.empty(framebuffer.res_w, framebuffer.res_h)
         return dataclasses.replace(
-            film, goal=(0, framebuffer.sppx), origin=origin, exposure=framebuffer.exposure
+            film,
+            goal=(0, 0 if self.config.beauty_render else framebuffer.sppx),
+            bound=self.config.error_eps if self.config.beauty_render else None,
+            origin=origin,
+            exposure=framebuffer.exposure,
         )
 
     def changed(self, config: Config) -> Scene:

@@ -30,11 +30,14 @@ def status_text(status: Status) -> str:
         return "loading ..."
     if status.state is State.FAILED:
         return (status.problem or "failed").splitlines()[0]
+    error = "error ..." if status.error is None else f"error {100 * status.error:.3g}%"
+    if status.bound is not None:
+        error += f", to be {100 * status.bound:.3g}%"
     parts = [
-        f"{status.spp:.0f} of {status.goal} spp",
+        f"{status.spp:.0f} of {status.goal} spp" if status.goal is not None else f"{status.spp:.4g} spp",
         f"{si(status.samples_per_second)} samples/s",
         f"{si(status.rays_per_second)} rays/s",
-        "error ..." if status.error is None else f"error {100 * status.error:.3g}%",
+        error,
         clock(status.seconds),
     ]
     if status.eta is not None:

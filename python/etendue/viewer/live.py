@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..film import Film
-from ..film.progressive import grown
+from ..film.progressive import grown, grown_beauty
 from ..scene import Scene
 from .status import State, Status
 
@@ -37,28 +38,48 @@ class Live:
 
     def taken(self) -> Film:
         """The film as it is now."""
-        film = grown(self.film, self.film.goal, self.renderer)
+        if self.film.bound is None:
+            film = grown(self.film, self.film.goal, self.renderer)
+        else:
+            film = grown_beauty(self.film, 0, self.renderer)
+            film.complete = self.renderer.error <= self.film.bound
         film.seconds = self.clock
         return film
 
     def status(self, state: State, problem: str | None) -> Status:
         """How far it is."""
-        framebuffer = self.scene.config.framebuffer
-        pixels, seconds = framebuffer.res_w * framebuffer.res_h, self.clock
-        samples = self.renderer.samples_done
-        missing = pixels * framebuffer.sppx - samples
-        rate = samples / seconds if seconds > 0 else 0.0
+        framebuffer, seconds, error = self.scene.config.framebuffer, self.clock, self.error
+        pixels, samples = framebuffer.res_w * framebuffer.res_h, self.renderer.samples_done
+        fraction = samples / (pixels * framebuffer.sppx)
+        if self.film.bound is not None:
+            # The error falls with the root of the number of samples.
+            fraction = 0.0 if error is None else min((self.film.bound / error) ** 2, 1.0)
+        running = state is State.RENDERING and fraction > 0
         return Status(
             state,
             samples / pixels,
-            framebuffer.sppx,
-            rate,
+            None if self.film.bound is not None else framebuffer.sppx,
+            fraction,
+            samples / seconds if seconds > 0 else 0.0,
             self.renderer.rays / seconds if seconds > 0 else 0.0,
-            self.errors[-1][1] if self.errors else None,
+            error,
+            self.film.bound,
             seconds,
-            missing / rate if rate > 0 and state is State.RENDERING else None,
+            seconds * (1 / fraction - 1) if running else None,
             problem,
         )
+
+    @property
+    def error(self) -> float | None:
+        """The estimate of the film's error; None: unknown yet."""
+        error = self.renderer.error
+        return error if math.isfinite(error) else None
+
+    def note_error(self) -> None:
+        """Adds the error to `errors`, if there is news of it."""
+        error = self.error
+        if error is not None and (not self.errors or self.errors[-1][1] != error):
+            self.errors.append((self.clock, error))
 
     def step(self, work: Callable[[], bool]) -> bool:
         """Does a part of the render, on the clock."""

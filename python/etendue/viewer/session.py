@@ -19,7 +19,6 @@ from ..config import Config
 from ..errors import EtendueError
 from ..film import Film
 from ..scene import Scene
-from .errors import relative_error
 from .live import Live
 from .pictures import MOST_COARSE, Look, Picture, Source, Stale, develop
 from .scenes import Scenes
@@ -27,7 +26,6 @@ from .status import State, Status
 
 # Shortest time between two pictures, and how long after one as many times its cost.
 _INTERVAL, _DUTY = 0.1, 4.0
-_ERROR_INTERVAL = 1.0
 # A first pass may take this long.
 _FIRST = 0.04
 _NICE = 3
@@ -38,13 +36,19 @@ def _is_same(one: Config, other: Config) -> bool:
 
 
 def _of_samples(config: Config) -> dict[str, Any]:
-    """What decides what a sample is, and not how many there are and how they are shown."""
+    """What decides what a sample is, and of a beauty render which there are; not how they are shown."""
     found = config.model_dump()
-    for key in ("beauty_render", "error_eps"):
-        del found[key]
-    for key in ("sppx", "exposure"):
-        del found["framebuffer"][key]
+    del found["framebuffer"]["sppx"], found["framebuffer"]["exposure"]
+    if not config.beauty_render:
+        del found["error_eps"]
     return found | {"folder": config.folder}
+
+
+def _rest(live: Live, config: Config) -> bool:
+    """Renders all that is missing; whether it is there."""
+    if config.beauty_render:
+        return live.renderer.render_until(config.error_eps)
+    return live.renderer.render(config.framebuffer.sppx)
 
 
 class Session:
@@ -213,7 +217,8 @@ class Session:
         live = self._live
         if live is not None and self._goes_on(live, version, config):
             live.scene = dataclasses.replace(live.scene, config=config)
-            live.film = dataclasses.replace(live.film, goal=(0, config.framebuffer.sppx))
+            if not config.beauty_render:
+                live.film = dataclasses.replace(live.film, goal=(0, config.framebuffer.sppx))
         else:
             self._finish(version, State.LOADING)
             scene = self._scenes.get(config)
@@ -234,14 +239,15 @@ class Session:
                 return
             with self._changed:
                 self._advanced(live, stride)
-        if self._step(version, live, lambda: live.renderer.render(config.framebuffer.sppx)):
+        if self._step(version, live, lambda: _rest(live, config)):
+            live.note_error()
             self._finish(version, State.DONE)
 
     def _goes_on(self, live: Live, version: int, config: Config) -> bool:
         """Whether what is there is part of what is wanted."""
         if self._fresh == version or _of_samples(live.scene.config) != _of_samples(config):
             return False
-        return config.framebuffer.sppx * live.renderer.sample_count().size >= live.renderer.samples_done
+        return config.beauty_render or config.framebuffer.sppx >= int(live.renderer.sample_count().max())
 
     def _first_stride(self, config: Config) -> int:
         pixels = config.framebuffer.res_w * config.framebuffer.res_h
@@ -269,14 +275,13 @@ class Session:
 
     def _develop_forever(self) -> None:
         number, wait = 0, _INTERVAL
-        next_error = 0.0
         while True:
             with self._changed:
                 rendering = self._state is State.RENDERING
                 self._changed.wait_for(lambda: self._closed or self._undeveloped, wait if rendering else None)
                 if self._closed:
                     return
-                live, look, state, is_new = self._live, self._look, self._state, self._undeveloped
+                live, look, is_new = self._live, self._look, self._undeveloped
                 self._undeveloped = False
             if live is None or not live.stride:
                 continue
@@ -292,13 +297,7 @@ class Session:
             except EtendueError as refused:
                 self._trouble = str(refused)
             cost = time.monotonic() - start
-            if live.stride == 1 and (time.monotonic() >= next_error or state is State.DONE):
-                seconds = live.clock
-                error = relative_error(source.film())
-                if error is not None:
-                    live.errors.append((seconds, error))
-                took = time.monotonic() - start
-                next_error = time.monotonic() + max(_ERROR_INTERVAL, _DUTY * took)
+            live.note_error()
             wait = max(_INTERVAL, _DUTY * cost)
 
     def _source(self, live: Live, look: Look, stride: int) -> Source:

@@ -22,16 +22,18 @@ class State(Enum):
 class Status:
     """How far a render is. `seconds` is time spent rendering; rates are means over it.
 
-    error: estimate of the relative error; None: not known yet. eta: seconds until it is done.
-    problem: why there is nothing to render.
+    goal: samples per pixel to reach; None: it is the error that is to fall to `bound`. error: estimate of the
+    relative error; None: not known yet. eta: seconds until it is done. problem: why there is nothing to render.
     """
 
     state: State = State.LOADING
     spp: float = 0.0
-    goal: int = 0
+    goal: int | None = None
+    fraction: float = 0.0
     samples_per_second: float = 0.0
     rays_per_second: float = 0.0
     error: float | None = None
+    bound: float | None = None
     seconds: float = 0.0
     eta: float | None = None
     problem: str | None = None
@@ -41,4 +43,4 @@ class Status:
         """100 when all is done, and not before."""
         if self.state is State.DONE:
             return 100
-        return min(math.floor(100 * self.spp / self.goal), 99) if self.goal else 0
+        return min(math.floor(100 * self.fraction), 99)
