@@ -62,7 +62,7 @@ build_up() {
         test) extras="[viewer,dev]" levels="run compare view test" packages="$packages $window $screen" ;;
         slow)
             extras="[viewer,dev,judge,browser]" levels="run compare view test slow"
-            packages="$packages $window $screen $(browser)"
+            packages="$packages $window $screen valgrind $(browser)"
             ;;
     esac
     install_packages
