@@ -188,7 +188,8 @@ def _key(name: str) -> Any:
 
 
 def cases() -> list[Any]:
-    some = [pytest.param(name, move_some, marks=[pytest.mark.slow] * (name in HEAVY)) for name in SCENES]
+    others = [name for name in SCENES if name != "box"]
+    some = [pytest.param(name, move_some, marks=[pytest.mark.slow] * (name in HEAVY)) for name in others]
     most = [pytest.param(name, move_all, marks=[pytest.mark.slow] * (name != "box")) for name in SCENES]
     return some + most
 
