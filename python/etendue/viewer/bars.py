@@ -30,9 +30,9 @@ def status_text(status: Status) -> str:
         return "loading ..."
     if status.state is State.FAILED:
         return (status.problem or "failed").splitlines()[0]
-    error = "error ..." if status.error is None else f"error {100 * status.error:.3g}%"
+    error = "error ..." if status.error is None else f"error {_percent(status.error)}"
     if status.bound is not None:
-        error += f", to be {100 * status.bound:.3g}%"
+        error += f", to be {_percent(status.bound)}"
     parts = [
         f"{status.spp:.0f} of {status.goal} spp" if status.goal is not None else f"{status.spp:.4g} spp",
         f"{si(status.samples_per_second)} samples/s",
@@ -43,6 +43,10 @@ def status_text(status: Status) -> str:
     if status.eta is not None:
         parts.append(f"{clock(status.eta)} left")
     return f"{status.state.value} {status.percent}%   " + "   ".join(parts)
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:.3g}%" if value < 10 else f"{100 * value:.0f}%"
 
 
 def draw_status(viewer: Viewer) -> None:

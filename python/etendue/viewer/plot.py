@@ -22,7 +22,9 @@ def draw(viewer: Viewer) -> None:
             implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
             implot.setup_axis_ticks(implot.ImAxis_.x1, _TICKS, [f"{tick:g}" for tick in _TICKS])
             implot.setup_axis_ticks(implot.ImAxis_.y1, _TICKS, [f"{100 * tick:g}%" for tick in _TICKS])
-            implot.setup_legend(implot.Location_.north_east)
+            implot.setup_legend(
+                implot.Location_.north, implot.LegendFlags_.outside | implot.LegendFlags_.horizontal
+            )
             for side, session in zip(("left", "right"), viewer.sessions, strict=False):
                 points, scene = session.errors, session.scene
                 if points and scene is not None:
