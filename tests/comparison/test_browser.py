@@ -224,3 +224,12 @@ def test_it_fits_every_screen(page: Any, folder: Path, width: int, scheme: str) 
     assert (light > 0.9 and dark < 0.2) if scheme == "light" else (light < 0.15 and dark > 0.8)
     page.screenshot(path=folder / f"{width}-{scheme}.png", full_page=True)
     assert page.problems == []
+
+
+def test_jupyter_shows_it(page: Any, comparison: Comparison) -> None:
+    notebook = page.context.new_page()
+    notebook.set_content(f"<p>a cell</p>{comparison._repr_html_()}")
+    frame = notebook.frame_locator("iframe")
+    frame.locator("body[data-ready]").wait_for(timeout=120_000)
+    assert frame.locator("h1").inner_text() == "lit"
+    notebook.close()

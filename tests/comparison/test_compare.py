@@ -192,7 +192,7 @@ class TestReference:
         """From halves, against a reference of 64 times the samples."""
         size = ["framebuffer.res_w=96", "framebuffer.res_h=72"]
         scene = etendue.load(etendue.read_config(lit, size))
-        true = references.made(scene, Goal(spp=4096), 0, lambda _: None, print)
+        true = references.made(scene, Goal(spp=4096), 0, lambda _: None)
         films = [references.scene_of(scene).render(spp=64, seed=seed) for seed in range(12)]
         made = [references.of_film(film, "test") for film in films]
         error = np.mean([np.square(film.image.astype(float) - true.image) for film in films])
@@ -200,7 +200,7 @@ class TestReference:
         assert np.mean([each.variance for each in made]) == pytest.approx(error, rel=0.15)
 
     def test_a_warning_where_it_is_too_noisy(self, lit: Path) -> None:
-        found = etendue.compare(lit, BOTH, spp=16, repeats=2, reference_spp=16).results["reference"]
+        found = etendue.compare(lit, BOTH, spp=64, repeats=2, reference_spp=16).results["reference"]
         assert "nee" in found["too_near"]
 
     def test_the_rule(self) -> None:
@@ -311,7 +311,7 @@ class TestCommand:
 
     def test_bias_fails(self, lit: Path) -> None:
         Path("e.json").write_text('{"short": {"max_cam_path_length": 1}}')
-        done = self.run("--estimators", "e.json", "--fail-if-biased", "-q", "--size", "64x48", "--spp", "16")
+        done = self.run("--estimators", "e.json", "--fail-if-biased", "-q", "--size", "256x192")
         assert done.exit_code == 1
         assert "short: biased: -" in done.stderr
 
@@ -326,6 +326,7 @@ class TestCommand:
             (["--repeats", "0"], "1 to 1000 repeats"),
             (["--time", "1"], "exclude each other"),
             (["--threads", "-1"], "--threads"),
+            (["--size", "65000x65000"], "of memory"),
             (["--set", "rr_treshold=1"], 'did you mean "rr_threshold"?'),
         ],
     )

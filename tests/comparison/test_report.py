@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import json
 import re
 import shlex
+import time
 import zlib
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,7 +19,7 @@ from numpy.typing import NDArray
 
 import etendue
 from etendue import cli
-from etendue.comparison import Comparison, crops, packing, report, techniques
+from etendue.comparison import Comparison, bias, crops, packing, report, results, techniques
 from etendue.comparison.tally import Invalid
 
 HOSTILE = "<script>alert(1)</script>\"'&lt;{{7*7}} $\\frac{ ünïcødé 雪 </script>"
@@ -65,7 +67,10 @@ def unpacked(image: dict[str, Any], shape: tuple[int, int]) -> NDArray[np.float6
     if image["channels"] == 3:
         bits[0] += bits[1]
         bits[2] += bits[1]
-    return np.moveaxis((bits << 2).view(np.float16).astype(float), 0, 2) * image["scale"]
+    return (
+        np.moveaxis((bits << image["dropped"]).astype(np.uint16).view(np.float16).astype(float), 0, 2)
+        * image["scale"]
+    )
 
 
 class TestPacking:
@@ -74,6 +79,12 @@ class TestPacking:
         image = np.random.default_rng(0).lognormal(0, 2, (20, 30, 3)) * factor
         back = unpacked(packing.packed(image), (20, 30))
         np.testing.assert_allclose(back, image, rtol=1 / 400)
+
+    def test_fewer_bits(self) -> None:
+        image = np.random.default_rng(0).lognormal(0, 2, (20, 30))
+        few = packing.packed(image, bits=4)
+        np.testing.assert_allclose(unpacked(few, (20, 30))[..., 0], image, rtol=0.033)
+        assert len(few["data"]) < len(packing.packed(image)["data"])
 
     def test_extremes(self) -> None:
         image = np.zeros((2, 2, 3), np.float32)
@@ -232,6 +243,34 @@ def test_replayed_samples_are_those_of_the_command_line(lit: Path) -> None:
     found = etendue.compare(changed, ["mis"], size=(8, 8), **FEW)
     command = report.replay(found.plan, found.tallies[0], Invalid(0, 0, 0, 0))
     assert "framebuffer.res_w=8" in command
+
+
+@pytest.mark.slow
+def test_a_large_report_is_small_and_quick(lit: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three estimators at 1024 x 1024, all noise: below 30 MB, within 10 seconds of one processor."""
+    size = 1024
+    found = etendue.compare(
+        lit, ["naive", "nee", "mis"], spp=1, repeats=2, reference_spp=2, size=(size, size)
+    )
+    random = np.random.default_rng(0)
+    colour = random.lognormal(-1, 1, (16, 16, 3)).repeat(size // 16, 0).repeat(size // 16, 1)
+
+    def noisy() -> NDArray[np.float32]:
+        grain = random.gamma(1, 1, (size, size, 1)) * random.gamma(30, 1 / 30, (size, size, 3))
+        return np.asarray(colour * grain, np.float32)
+
+    for tally in found.tallies:
+        assert tally.first is not None
+        tally.film.image[:] = noisy()
+        tally.sum_squares[:] += noisy() ** 2
+        tally.first = tally.first._replace(flip=random.random((size, size), np.float32))
+    monkeypatch.setattr(found, "reference", dataclasses.replace(found.reference, image=noisy()))
+    start = time.process_time()
+    verdicts = [bias.judge(tally, found.reference) for tally in found.tallies]
+    results.of(found.plan, found.reference, found.tallies, verdicts, "")
+    page = found.html
+    assert time.process_time() - start < 10
+    assert 15e6 < len(page.encode()) < 30e6
 
 
 @pytest.mark.parametrize(

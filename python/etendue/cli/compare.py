@@ -40,7 +40,6 @@ class Job:
     repeats: int
     reference: Path | None
     reference_spp: int | None
-    size: tuple[int, int] | None
     threads: int
     data_dirs: Sequence[Path]
     limits: Mapping[str, float]
@@ -105,8 +104,8 @@ def _run(job: Job) -> int:
     for warning in scene.warnings:
         job.say(f"warning: {warning}")
     plan = plan_of(
-        scene, chosen, job.spp, job.time, job.reference, job.repeats, job.output, job.size, job.threads,
-        job.data_dirs, job.reference_spp, [each for each in job.overrides if isinstance(each, str)],
+        scene, chosen, job.spp, job.time, job.reference, job.repeats, job.output, None, job.threads,
+        job.data_dirs, job.reference_spp, _changes(job.overrides),
     )  # fmt: skip
     with _shown(job.quiet) as report:
         comparison = finish(plan, report, shlex.join([resuming.program(), *sys.argv[1:]]))
@@ -123,6 +122,12 @@ def _run(job: Job) -> int:
     for failure in failures:
         print(failure, file=sys.stderr)
     return FAILED if failures else 0
+
+
+def _changes(overrides: Sequence[str | Override]) -> list[str]:
+    """As for --set; each repeat has a seed of its own."""
+    texts = [each if isinstance(each, str) else f"{each.key}={each.value}" for each in overrides]
+    return [text for text in texts if not text.startswith("seed=")]
 
 
 def _closing(comparison: Comparison) -> Iterator[str]:

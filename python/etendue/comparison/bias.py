@@ -7,13 +7,14 @@ up, and eight repeats give hundreds of degrees of freedom instead of seven.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import statistics
-from .metrics import LUMINANCE
+from .metrics import EPSILON, LUMINANCE
 from .reference import Reference
 from .statistics import Estimate
 from .tally import Tally
@@ -22,7 +23,7 @@ from .tally import Tally
 LEVEL = 0.001
 # Three tests share it: the worst tile (Holm), all tiles together (Fisher), and the image's mean.
 _SHARE = LEVEL / 3
-# Samples that a tile's mean must rest on for a t-test to be trusted that far out in its tails.
+# Samples' worth of light that a tile must rest on for a t-test to be trusted that far out in its tails.
 LEAST_WEIGHT = 200.0
 # Tiles across the image at most, and pixels across a tile at least.
 _MOST_TILES, _LEAST_TILE = 16, 8
@@ -33,9 +34,9 @@ class Bias:
     """The verdict on one estimator.
 
     tile: its width and height in pixels. p_values, relative: float64 (rows, columns), of the test and the relative
-    difference of each tile; NaN where there are too few samples to tell. ratio: mean of the image over that of
-    the reference, both over the tiles that are judged. p_tiles, p_worst, p_mean: of all tiles together, of the
-    worst tile (adjusted for their number), and of the ratio. judged: share of the tiles that are.
+    difference of each tile; none (0, 0) where there are too few samples to tell. ratio: mean of the image over that of
+    the reference. p_tiles, p_worst, p_mean: of all tiles together, of the
+    worst tile (adjusted for their number), and of the ratio.
     """
 
     tile: int
@@ -47,12 +48,11 @@ class Bias:
     p_worst: float
     p_mean: float
     uniformity: float
-    judged: float
 
     @property
     def is_biased(self) -> bool | None:
         """None: too few samples to tell."""
-        if self.judged == 0:
+        if self.p_values.size == 0:
             return None
         return min(self.p_tiles, self.p_worst, self.p_mean) <= _SHARE
 
@@ -64,45 +64,38 @@ class Bias:
         shift, half = self.ratio.value - 1, (self.ratio.high - self.ratio.low) / 2
         interval = f"{shift:+.{_digits(half)}%} ± {half:.{_digits(half)}%}"
         if self.is_biased:
-            where = f", {int(self.rejected.sum())} of {int(np.isfinite(self.p_values).sum())} tiles differ"
-            text = f"biased: {interval}{where}, see map"
-        else:
-            text = f"no bias detectable at {LEVEL:.1%} (mean {interval})"
-        if self.judged < 1:
-            text += f"; {1 - self.judged:.0%} of the image has too few samples to tell"
-        return text
+            where = f", {int(self.rejected.sum())} of {self.p_values.size} tiles differ"
+            return f"biased: {interval}{where}, see map"
+        return f"no bias detectable at {LEVEL:.1%} (mean {interval})"
 
 
 def judge(tally: Tally, reference: Reference) -> Bias:
     """The verdict; it needs two repeats at least."""
-    difference = tally.luminance - reference.image.astype(np.float64) @ LUMINANCE
+    brightness = reference.image.astype(np.float64) @ LUMINANCE
+    tile = _tile(tally, brightness)
+    if tile is None:
+        nothing, unknown = np.zeros((0, 0)), Estimate(np.nan, np.nan, np.nan)
+        return Bias(0, nothing, nothing, nothing.astype(bool), unknown, 1.0, 1.0, 1.0, 1.0)
     ours, theirs = tally.luminance_variance, reference.luminance_variance
-    tile = _tile(tally, reference)
-    judged = _can_be_judged(tally, reference, tile)
-    pixels = sums(np.ones_like(difference), tile)
-    mean_difference = sums(difference, tile) / pixels
+    pixels = sums(np.ones_like(brightness), tile)
+    difference = sums(tally.luminance - brightness, tile) / pixels
+    brightness = sums(brightness, tile) / pixels
     variances = sums(ours, tile) / pixels**2, sums(theirs, tile) / pixels**2
-    freedoms = _freedom(ours, tile, tally.repeats), 1e6
-    p = np.where(judged, statistics.welch(mean_difference, variances, freedoms), np.nan)
-    tested = p[judged]
-    brightness = sums(reference.image.astype(np.float64) @ LUMINANCE, tile) / pixels
-    relative = np.divide(
-        mean_difference, brightness, out=np.full_like(brightness, np.nan), where=judged & (brightness > 0)
-    )
-    rejected = np.zeros_like(judged)
-    rejected[judged] = statistics.holm(tested, _SHARE)
-    ratio, p_mean = _ratio(judged * pixels, brightness, mean_difference, variances, freedoms[0])
+    freedom = _freedom(ours, tile, tally.repeats)
+    p = statistics.welch(difference, variances, (freedom, 1e6))
+    relative = np.divide(difference, brightness, out=np.zeros_like(difference), where=brightness > 0)
+    rejected = statistics.holm(p.ravel(), _SHARE).reshape(p.shape)
+    ratio, p_mean = _ratio(pixels, brightness, difference, variances, freedom)
     return Bias(
         tile,
         p,
         relative,
         rejected,
         ratio,
-        statistics.fisher(tested),
-        float(min(tested.min() * tested.size, 1.0)) if tested.size else 1.0,
+        statistics.fisher(p.ravel()),
+        float(min(p.min() * p.size, 1.0)),
         p_mean,
-        statistics.uniformity(tested) if tested.size > 1 else 1.0,
-        float(judged.mean()),
+        statistics.uniformity(p.ravel()) if p.size > 1 else 1.0,
     )
 
 
@@ -112,28 +105,37 @@ def sums(values: NDArray[np.float64], tile: int) -> NDArray[np.float64]:
     return np.asarray(np.add.reduceat(rows, np.arange(0, values.shape[1], tile), axis=1))
 
 
-def _tile(tally: Tally, reference: Reference) -> int:
-    """Pixels across a tile: few, but enough for the means of most tiles to be normal; else of as many as can be."""
-    largest = max(tally.valid.shape)
-    sizes = [max(_LEAST_TILE, -(-largest // _MOST_TILES))]
-    while sizes[-1] < largest:
-        sizes.append(2 * sizes[-1])
-    shares = [float(_can_be_judged(tally, reference, size).mean()) for size in sizes]
-    enough = [size for size, share in zip(sizes, shares, strict=True) if share >= 0.9]
-    return enough[0] if enough else sizes[int(np.argmax(shares))]
+def _tile(tally: Tally, brightness: NDArray[np.float64]) -> int | None:
+    """Pixels across a tile, as few as leave each with `LEAST_WEIGHT` samples' worth of light; None: there is no such.
 
-
-def _can_be_judged(tally: Tally, reference: Reference, tile: int) -> NDArray[np.bool_]:
-    """Which tiles rest on enough samples: on `LEAST_WEIGHT` or more in the sense of (sum x)² / sum x² (Kish 1965).
-
-    Where a tile's light comes from a few samples, its mean is skewed: most sets of repeats miss the rare bright
-    ones, look too dark, and seem to agree on it. Black in both images is fine.
+    The worth of samples x is (sum x)² / sum x² (Kish 1965), here of x over the reference, in the whole image. Where
+    light comes in a few bright samples, most sets of repeats miss some, look too dark, and seem to agree on it. A
+    tile that has none yet cannot know that; and to leave out those that have one would leave the dark ones.
     """
-    total = sums(tally.sum.sum(axis=2), tile)
-    squares = sums(tally.sum_squares.sum(axis=2), tile) * 3
-    weight = np.divide(total**2, squares, out=np.zeros_like(total), where=squares > 0)
-    black = (squares == 0) & (sums(reference.image.astype(np.float64) @ LUMINANCE, tile) == 0)
-    return np.asarray((weight >= LEAST_WEIGHT) | black)
+    scale = np.square(brightness) + EPSILON
+    light, squares = tally.sum.mean(axis=2) / np.sqrt(scale), tally.sum_squares.mean(axis=2) / scale
+    largest = max(brightness.shape)
+    if not squares.any():
+        # All black is what it should be, or is not known yet.
+        return None if brightness.any() else largest
+    worth = float(_worth(light, squares, largest)[0, 0])
+    if worth < LEAST_WEIGHT:
+        return None
+    enough = math.ceil(math.sqrt(brightness.size * LEAST_WEIGHT / worth))
+    tile = max(_LEAST_TILE, -(-largest // _MOST_TILES), min(enough, largest))
+    # Rare light may be in one part of the image: no tile may rest on less.
+    while tile < largest:
+        lit = sums(brightness, tile) > 0
+        if (_worth(light, squares, tile)[lit] >= LEAST_WEIGHT).all():
+            break
+        tile *= 2
+    return min(tile, largest)
+
+
+def _worth(light: NDArray[np.float64], squares: NDArray[np.float64], tile: int) -> NDArray[np.float64]:
+    """(sum x)² / sum x² of each tile."""
+    total, of_squares = sums(light, tile), sums(squares, tile)
+    return np.divide(total**2, of_squares, out=np.zeros_like(total), where=of_squares > 0)
 
 
 def _freedom(variances: NDArray[np.float64], tile: int, repeats: int) -> NDArray[np.float64]:
@@ -150,7 +152,7 @@ def _ratio(
     variances: tuple[NDArray[np.float64], NDArray[np.float64]],
     freedom: NDArray[np.float64],
 ) -> tuple[Estimate, float]:
-    """Mean of the judged tiles over the reference's, with its interval, and the p-value of its being 1."""
+    """Mean of the image over the reference's, with its interval, and the p-value of its being 1."""
     reference = float((weights * brightness).sum())
     if reference <= 0:
         return Estimate(np.nan, np.nan, np.nan), 1.0

@@ -41,7 +41,7 @@ def curves(names: Sequence[str], all_curves: Sequence[Sequence[Curve]]) -> str:
 def p_values(verdict: Bias) -> str:
     """Histogram of the tiles' p-values: flat where the estimator is right."""
     figure, axis = _figure(1, 3.4, 2.3)
-    p = verdict.p_values[np.isfinite(verdict.p_values)]
+    p = verdict.p_values.ravel()
     bins = 10
     axis.hist(p, bins=np.linspace(0, 1, bins + 1), color=COLOURS[0], alpha=0.8)
     axis.axhline(len(p) / bins, color=_INK, lw=0.8, ls="--")
@@ -51,15 +51,12 @@ def p_values(verdict: Bias) -> str:
 
 
 def bias_map(verdict: Bias) -> str:
-    """Relative difference of each tile, with those that fall outlined; grey: too few samples to tell."""
+    """Relative difference of each tile, with those that fall outlined."""
     figure, axis = _figure(1, 3.4, 2.6)
     figure.subplots_adjust(0.02, 0.04, 0.96, 0.96)
-    values = np.ma.masked_invalid(verdict.relative)
-    shown = np.abs(values.compressed())
-    limit = max(float(np.percentile(shown, 98)) if shown.size else 0.0, 1e-4)
-    colours = needed("matplotlib").colormaps["RdBu_r"].copy()
-    colours.set_bad("#8888")
-    image = axis.imshow(values, cmap=colours, vmin=-limit, vmax=limit, interpolation="nearest")
+    values = verdict.relative
+    limit = max(float(np.percentile(np.abs(values), 98)), 1e-4)
+    image = axis.imshow(values, cmap="RdBu_r", vmin=-limit, vmax=limit, interpolation="nearest")
     for y, x in np.argwhere(verdict.rejected):
         axis.add_patch(_rectangle(x, y))
     axis.set_xticks([])

@@ -1,7 +1,7 @@
 """Images packed for a page: small enough for ten of them, and exact enough to read pixels from.
 
-A value becomes a half float of 8 bits of mantissa (right to 0.25%) after a scale that makes the largest fit. Red and
-blue are stored as differences of their bits from green's, bytes of one kind together, then deflated.
+A value becomes a half float with some bits of its mantissa (8: right to 0.25%) after a scale that makes the largest
+fit. Red and blue are stored as differences of their bits from green's, bytes of one kind together, then deflated.
 The page's script undoes it: page/report.js, unpack.
 """
 
@@ -14,24 +14,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-_DROPPED_BITS = 2
+_MANTISSA = 10
 _LARGEST = 2.0**15
 
 
-def packed(image: NDArray[Any]) -> dict[str, Any]:
-    """The image (height, width) or (height, width, 3), of finite values, as plain data for JSON."""
+def packed(image: NDArray[Any], bits: int = 8) -> dict[str, Any]:
+    """The image (height, width) or (height, width, 3), of finite values, as plain data for JSON.
+
+    bits: of the mantissa that are kept, 0 to 9.
+    """
+    dropped = _MANTISSA - bits
     values = np.atleast_3d(np.asarray(image, np.float64))
     top = float(np.abs(values).max(initial=0))
     scale = 2.0 ** np.floor(np.log2(_LARGEST / top)) if top > 0 else 1.0
     half = (values * scale).astype(np.float16).view(np.uint16).astype(np.uint32)
-    bits = ((half + (1 << _DROPPED_BITS >> 1)) >> _DROPPED_BITS).astype(np.uint16)
-    if bits.shape[2] == 3:
-        bits[..., 0] -= bits[..., 1]
-        bits[..., 2] -= bits[..., 1]
-    planes = np.ascontiguousarray(np.moveaxis(bits, 2, 0)).astype("<u2")
+    words = ((half + (1 << dropped >> 1)) >> dropped).astype(np.uint16)
+    if words.shape[2] == 3:
+        words[..., 0] -= words[..., 1]
+        words[..., 2] -= words[..., 1]
+    planes = np.ascontiguousarray(np.moveaxis(words, 2, 0)).astype("<u2")
     data = planes.view(np.uint8).reshape(-1, 2).T.tobytes()
     return {
-        "channels": int(bits.shape[2]),
+        "channels": int(words.shape[2]),
+        "dropped": dropped,
         "scale": float(1 / scale),
         "data": base64.b64encode(zlib.compress(data, 3)).decode(),
     }

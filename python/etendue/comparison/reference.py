@@ -82,9 +82,7 @@ def given(path: Path, width: int, height: int) -> Reference:
     return found
 
 
-def made(
-    scene: Scene, goal: Goal, threads: int, progress: Callable[[float], object], say: Callable[[str], object]
-) -> Reference:
+def made(scene: Scene, goal: Goal, threads: int, progress: Callable[[float], object]) -> Reference:
     """The reference of `scene`, gone on from the cached one where that has not enough of `goal` yet.
 
     Ctrl-C raises KeyboardInterrupt, with what is done kept in the cache.
@@ -96,7 +94,6 @@ def made(
         path.parent.mkdir(parents=True, exist_ok=True)
         film = _render(scene, goal, film, threads, progress, lambda now: now.write(path))
         if not reached(film, goal):
-            say(f"the reference has {film.spp:.0f} samples per pixel so far, kept in {path}")
             raise KeyboardInterrupt
     assert film is not None
     return of_film(film, f"{ESTIMATOR.settings['algorithm']} with MIS, independent samples", path)

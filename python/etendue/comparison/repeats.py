@@ -59,10 +59,9 @@ class Interrupted(KeyboardInterrupt):
         self.done, self.whole = done, whole
 
 
-def carry_out(
-    plan: Plan, report: Report | None = None, say: Callable[[str], object] = lambda _: None
-) -> tuple[Reference, list[Tally]]:
-    """Renders all that is missing. Ctrl-C raises Interrupted; what is finished is in the folder.
+def carry_out(plan: Plan, report: Report | None = None) -> tuple[Reference, list[Tally]]:
+    """Renders all that is missing. Ctrl-C raises Interrupted; what is finished is in the folder, and what
+    there is of the reference in the cache.
 
     Repeats take turns, so that a machine that is slower for a while is so for every estimator.
     """
@@ -85,7 +84,7 @@ def carry_out(
     work = Work([*first, *splits, *tasks.values()], report)
     tallies = [Tally(estimator) for estimator in plan.estimators]
     try:
-        reference = _reference(plan, work, first, say)
+        reference = _reference(plan, work, first)
         for tally, scene, task in zip(tallies, scenes, splits, strict=True):
             work.begin(task)
             tally.techniques = techniques.measured(scene, work.advance)
@@ -147,12 +146,12 @@ def render(scene: Scene, plan: Plan, reference: Reference, progress: Callable[[f
         spp *= 2
 
 
-def _reference(plan: Plan, work: Work, tasks: list[Task], say: Callable[[str], object]) -> Reference:
+def _reference(plan: Plan, work: Work, tasks: list[Task]) -> Reference:
     if plan.given is not None:
         return plan.given
     for task in tasks:
         work.begin(task)
-    reference = references.made(plan.scene, plan.reference_goal, plan.threads, work.advance, say)
+    reference = references.made(plan.scene, plan.reference_goal, plan.threads, work.advance)
     if tasks:
         work.finish()
     return reference

@@ -120,7 +120,6 @@ def _bias(verdict: Bias) -> dict[str, Any]:
         "p_tiles": verdict.p_tiles,
         "p_worst": verdict.p_worst,
         "uniformity": verdict.uniformity,
-        "judged": verdict.judged,
         "tile": verdict.tile,
         "p_values": [[_number(p) for p in row] for row in verdict.p_values],
         "relative": [[_number(value) for value in row] for row in verdict.relative],

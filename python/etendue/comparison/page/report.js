@@ -22,7 +22,7 @@
         const values = new Float32Array(count);
         for (let channel = 0; channel < image.channels; ++channel) {
             for (let i = 0; i < pixels; ++i) {
-                values[i * image.channels + channel] = half(bits[channel * pixels + i] << 2) * image.scale;
+                values[i * image.channels + channel] = half(bits[channel * pixels + i] << image.dropped) * image.scale;
             }
         }
         return values;
@@ -50,7 +50,7 @@
         const weight = (j) => reference[j] * reference[j] + data.epsilon;
         each.error = perPixel((j) => (each.image[j] - reference[j]) ** 2 / weight(j));
         each.signed = perPixel((j) => (each.image[j] - reference[j]) / Math.sqrt(weight(j)));
-        for (let i = 0; i < pixels; ++i) each.flip[i] /= 255;
+        for (let i = 0; i < pixels; ++i) each.flip[i] /= 100;
     }
 
     const logarithmic = (low, high) =>
