@@ -236,6 +236,7 @@ def test_contributions_go_on_where_another_renderer_was() -> None:
         first.half_sum(),
         first.sample_count(),
         first.invalid_per_pixel(),
+        first.half_count(),
     )
     second.resume(*sums)
     second.split(first.contributions())
