@@ -116,6 +116,7 @@ def test_it_shows_the_images_and_flips(page: Any, comparison: Comparison) -> Non
 
 
 def test_both_books_flip_together(page: Any) -> None:
+    page.get_by_role("button", name="Error", exact=True).click()
     flip(page, "book-beauty", "naive")
     first = colours(page, "book-error")
     page.locator("#book-beauty").press("2")
@@ -202,6 +203,7 @@ def test_it_reads_pixels(page: Any, comparison: Comparison) -> None:
 
 
 def test_exposure_changes_the_image_and_not_the_metric(page: Any) -> None:
+    page.get_by_role("button", name="Error", exact=True).click()
     flip(page, "book-beauty", "mis")
     image, error = colours(page, "book-beauty"), colours(page, "book-error")
     page.locator("#book-beauty").press("e")
