@@ -81,6 +81,20 @@ def require_folders(folders: list[Path] | None) -> None:
         raise EtendueError("\n".join(missing))
 
 
+def require_threads(threads: int) -> None:
+    """Raise EtendueError where `threads` is no number of threads."""
+    if threads < 0:
+        raise EtendueError(
+            f"--threads: a number of threads, or 0 for one on each core, is needed, not {threads}"
+        )
+
+
+def _algorithm_names() -> list[str]:
+    from .. import _core
+
+    return [info.name for info in _core.algorithms()]
+
+
 ConfigFile = Annotated[
     Path, typer.Argument(metavar="CONFIG", help="The scene file (JSON).", show_default=False)
 ]
@@ -99,6 +113,25 @@ Settings = Annotated[
         "scene.materials[floor].roughness=0.2. May be repeated.",
     ),
 ]
+AlgorithmName = Annotated[
+    str | None,
+    typer.Option(
+        "--algorithm",
+        metavar="NAME",
+        autocompletion=_algorithm_names,
+        help="The estimator (see: etendue algorithms).",
+    ),
+]
+ImageSize = Annotated[
+    Size | None,
+    typer.Option(
+        "--size", metavar="WxH", parser=parse_size, help="Width and height in pixels, as in 640x480."
+    ),
+]
+Threads = Annotated[
+    int, typer.Option("--threads", metavar="N", help="Number of threads; 0 is one for each core.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no messages but errors.")]
 
 
 def _version(wanted: bool) -> None:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..config import read_config
+from ..config.overrides import Override
 from ..errors import EtendueError
-from .render import overrides_of
 
 
 def replay(
@@ -16,17 +16,15 @@ def replay(
     pixel: tuple[int, int],
     sample: int,
     output: Path | None,
-    algorithm: str | None,
-    seed: int | None,
+    overrides: Sequence[str | Override],
     data_dirs: Sequence[Path],
-    settings: Sequence[str],
 ) -> str:
     """The path in lines for people, after drawing it to `output`; raises EtendueError."""
     from .. import scene as scenes
 
     if output is not None and output.suffix.lower() != ".svg":
         raise EtendueError(f'{output}: paths are drawn as .svg, not as "{output.suffix}"')
-    config = read_config(path, overrides_of(algorithm, None, None, seed, settings), data_dirs)
+    config = read_config(path, overrides, data_dirs)
     for name in config.scenes_to_build(data_dirs):
         print(f"building the bundled scene {name}, this once", file=sys.stderr, flush=True)
     scene = scenes.load(config, data_dirs=data_dirs)

@@ -7,8 +7,18 @@ from typing import Annotated
 
 import typer
 
-from ...errors import EtendueError
-from ..app import ConfigFile, DataFolders, Settings, Size, app, parse_size, reported, require_folders
+from ..app import (
+    ConfigFile,
+    DataFolders,
+    ImageSize,
+    Quiet,
+    Settings,
+    Threads,
+    app,
+    reported,
+    require_folders,
+    require_threads,
+)
 
 
 @app.command()
@@ -60,15 +70,8 @@ def compare(
     reference_spp: Annotated[
         int | None, typer.Option("--reference-spp", metavar="N", help="Samples per pixel of that reference.")
     ] = None,
-    size: Annotated[
-        Size | None,
-        typer.Option(
-            "--size", metavar="WxH", parser=parse_size, help="Width and height in pixels, as in 640x480."
-        ),
-    ] = None,
-    threads: Annotated[
-        int, typer.Option("--threads", metavar="N", help="Number of threads; 0 is one for each core.")
-    ] = 0,
+    size: ImageSize = None,
+    threads: Threads = 0,
     seed: Annotated[
         int | None,
         typer.Option("--seed", metavar="N", help="Of the first repeat; the others count on from it."),
@@ -87,19 +90,14 @@ def compare(
     fail_if_biased: Annotated[
         bool, typer.Option("--fail-if-biased", help="Exit with code 1 if an estimator is biased.")
     ] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="No progress and no messages but errors.")
-    ] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Compare estimators on one scene: a report of noise, time and bias."""
     from .. import compare as compare_command
     from ..render import overrides_of
 
     require_folders(data)
-    if threads < 0:
-        raise EtendueError(
-            f"--threads: a number of threads, or 0 for one on each core, is needed, not {threads}"
-        )
+    require_threads(threads)
     job = compare_command.Job(
         config,
         estimators,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..app import DataFolders, app, reported, require_folders
+from ..app import DataFolders, Quiet, Threads, app, reported, require_folders, require_threads
 
 
 @app.command(short_help="Denoise a film.")
@@ -27,12 +27,8 @@ def denoise(
         ),
     ],
     data: DataFolders = None,
-    threads: Annotated[
-        int, typer.Option("--threads", metavar="N", help="Number of threads; 0 is one for each core.")
-    ] = 0,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="No progress and no messages but errors.")
-    ] = False,
+    threads: Threads = 0,
+    quiet: Quiet = False,
 ) -> None:
     """Denoise a film with Open Image Denoise, guided by what its scene shows in each pixel. Biased.
 
@@ -41,4 +37,5 @@ def denoise(
     from .. import denoising
 
     require_folders(data)
+    require_threads(threads)
     denoising.denoise(film, output, tuple(data or ()), threads, quiet)

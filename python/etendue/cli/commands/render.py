@@ -8,14 +8,18 @@ from typing import Annotated
 import typer
 
 from ...errors import EtendueError
-from ..app import DataFolders, Settings, Size, app, parse_size, reported, require_folders
-
-
-def algorithm_names() -> list[str]:
-    """What --algorithm may be."""
-    from ... import _core
-
-    return [info.name for info in _core.algorithms()]
+from ..app import (
+    AlgorithmName,
+    DataFolders,
+    ImageSize,
+    Quiet,
+    Settings,
+    Threads,
+    app,
+    reported,
+    require_folders,
+    require_threads,
+)
 
 
 def _aov_names() -> list[str]:
@@ -65,24 +69,9 @@ def render(
             help="Stop after so many seconds of rendering, even if samples are missing.",
         ),
     ] = None,
-    size: Annotated[
-        Size | None,
-        typer.Option(
-            "--size", metavar="WxH", parser=parse_size, help="Width and height in pixels, as in 640x480."
-        ),
-    ] = None,
-    algorithm: Annotated[
-        str | None,
-        typer.Option(
-            "--algorithm",
-            metavar="NAME",
-            autocompletion=algorithm_names,
-            help="The estimator (see: etendue algorithms).",
-        ),
-    ] = None,
-    threads: Annotated[
-        int, typer.Option("--threads", metavar="N", help="Number of threads; 0 is one for each core.")
-    ] = 0,
+    size: ImageSize = None,
+    algorithm: AlgorithmName = None,
+    threads: Threads = 0,
     seed: Annotated[
         int | None,
         typer.Option(
@@ -161,9 +150,7 @@ def render(
             "--json-progress", help="Progress and messages as one JSON object a line on the standard error."
         ),
     ] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="No progress and no messages but errors.")
-    ] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Render a scene file to images, or go on from a film."""
     from ...film import resuming, sample_ranges
@@ -172,10 +159,7 @@ def render(
     if config is None and resume is None:
         context.fail("Missing argument 'CONFIG', or --resume and a film.")
     require_folders(data)
-    if threads < 0:
-        raise EtendueError(
-            f"--threads: a number of threads, or 0 for one on each core, is needed, not {threads}"
-        )
+    require_threads(threads)
     if time is not None and not 0 < time < float("inf"):
         raise EtendueError(f"--time: a number of seconds above 0 is needed, not {time:g}")
     if checkpoint is not None and film is None and resume is None:

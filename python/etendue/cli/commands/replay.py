@@ -8,8 +8,7 @@ from typing import Annotated, NamedTuple
 
 import typer
 
-from ..app import ConfigFile, DataFolders, Settings, app, reported, require_folders
-from .render import algorithm_names
+from ..app import AlgorithmName, ConfigFile, DataFolders, ImageSize, Settings, app, reported, require_folders
 
 
 class Pixel(NamedTuple):
@@ -49,15 +48,8 @@ def replay(
             "-o", "--output", metavar="FILE", help="Also draw the path over the scene, as an .svg file."
         ),
     ] = None,
-    algorithm: Annotated[
-        str | None,
-        typer.Option(
-            "--algorithm",
-            metavar="NAME",
-            autocompletion=algorithm_names,
-            help="The estimator (see: etendue algorithms).",
-        ),
-    ] = None,
+    algorithm: AlgorithmName = None,
+    size: ImageSize = None,
     seed: Annotated[int | None, typer.Option("--seed", metavar="N", help="The seed of the render.")] = None,
     data: DataFolders = None,
     settings: Settings = None,
@@ -65,6 +57,8 @@ def replay(
     """Tell the path of one sample of a render with these settings: positions, materials, lobes, pdfs, weights,
     throughput, Russian roulette."""
     from .. import replaying
+    from ..render import overrides_of
 
     require_folders(data)
-    print(replaying.replay(config, pixel, sample, output, algorithm, seed, data or [], settings or []))
+    overrides = overrides_of(algorithm, None, size, seed, settings or [])
+    print(replaying.replay(config, pixel, sample, output, overrides, data or []))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ...errors import EtendueError
-from ..app import DataFolders, Settings, app, reported, require_folders
+from ..app import DataFolders, Settings, Threads, app, reported, require_folders, require_threads
 
 
 @app.command(short_help="Open a window on a scene, to change it and see the noise change.")
@@ -22,9 +22,7 @@ def view(
             show_default=False,
         ),
     ] = None,
-    threads: Annotated[
-        int, typer.Option("--threads", metavar="N", help="Number of threads; 0 is one for each core.")
-    ] = 0,
+    threads: Threads = 0,
     data: DataFolders = None,
     settings: Settings = None,
     screenshot: Annotated[
@@ -46,10 +44,7 @@ def view(
     from ... import outputs, viewer
 
     require_folders(data)
-    if threads < 0:
-        raise EtendueError(
-            f"--threads: a number of threads, or 0 for one on each core, is needed, not {threads}"
-        )
+    require_threads(threads)
     if after is not None and (screenshot is None or not 0 <= after < float("inf")):
         raise EtendueError("--after: a number of seconds of at least 0, with --screenshot, is needed")
     if screenshot is not None:
