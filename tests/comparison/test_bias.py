@@ -118,6 +118,20 @@ def test_rare_light_on_top_of_ordinary_light_is_not_judged(truth: Draw) -> None:
     assert not any(verdict.is_biased for verdict in verdicts)
 
 
+def test_a_little_rare_light_that_has_not_come_is_no_evidence(truth: Draw) -> None:
+    """2% of the light in one sample of 1,000: a tile has two such on average, and many have none."""
+    random = np.random.default_rng(10)
+
+    def draw(r: np.random.Generator, t: Draw) -> Draw:
+        return t * (0.98 + 0.02 * (r.random(t.shape) - 0.5) + 20 * (r.random(t.shape) < 1 / 1000))
+
+    verdicts = [bias.judge(tally(random, draw, truth), exact(truth)) for _ in range(20)]
+    assert min(verdict.p_values.min() for verdict in verdicts) < 1e-8
+    assert not any(verdict.is_biased for verdict in verdicts)
+    # What such light cannot explain is evidence all the same.
+    assert bias.judge(tally(random, lambda r, t: draw(r, 0.9 * t), truth), exact(truth)).is_biased
+
+
 def test_tiles_grow_with_rarity(truth: Draw) -> None:
     random = np.random.default_rng(9)
 

@@ -25,6 +25,8 @@ LEVEL = 0.001
 _SHARE = LEVEL / 3
 # Samples' worth of light that a tile must rest on for a t-test to be trusted that far out in its tails.
 LEAST_WEIGHT = 200.0
+# Bright samples that may have failed to come: where this many are expected, none comes with a chance of e^-9, 0.01%.
+_UNSEEN = 9
 # Tiles across the image at most, and pixels across a tile at least.
 _MOST_TILES, _LEAST_TILE = 16, 8
 
@@ -78,13 +80,16 @@ def judge(tally: Tally, reference: Reference) -> Bias:
         return Bias(0, nothing, nothing, nothing.astype(bool), unknown, 1.0, 1.0, 1.0, 1.0)
     ours, theirs = tally.luminance_variance, reference.luminance_variance
     pixels = sums(np.ones_like(brightness), tile)
-    difference = sums(tally.luminance - brightness, tile) / pixels
+    difference = tally.luminance - brightness
+    excused = _may_be_unseen(difference, tile), _may_be_unseen(difference, max(difference.shape))
+    difference = sums(difference, tile) / pixels
     brightness = sums(brightness, tile) / pixels
     variances = sums(ours, tile) / pixels**2, sums(theirs, tile) / pixels**2
     freedom = _freedom(ours, tile, tally.repeats)
     p = statistics.welch(difference, variances, (freedom, 1e6))
     relative = np.divide(difference, brightness, out=np.zeros_like(difference), where=brightness > 0)
-    rejected = statistics.holm(p.ravel(), _SHARE).reshape(p.shape)
+    evidence = np.where(excused[0], 1.0, p)
+    rejected = statistics.holm(evidence.ravel(), _SHARE).reshape(p.shape)
     ratio, p_mean = _ratio(pixels, brightness, difference, variances, freedom)
     return Bias(
         tile,
@@ -92,11 +97,22 @@ def judge(tally: Tally, reference: Reference) -> Bias:
         relative,
         rejected,
         ratio,
-        statistics.fisher(p.ravel()),
-        float(min(p.min() * p.size, 1.0)),
-        p_mean,
+        statistics.fisher(evidence.ravel()),
+        float(min(evidence.min() * p.size, 1.0)),
+        1.0 if excused[1].all() else p_mean,
         statistics.uniformity(p.ravel()) if p.size > 1 else 1.0,
     )
+
+
+def _may_be_unseen(difference: NDArray[np.float64], tile: int) -> NDArray[np.bool_]:
+    """bool (rows, columns): which tiles are too dark by no more than a few rare bright samples would bring.
+
+    Rare samples are as bright as the brightest that was seen anywhere, which shows in its pixel's `difference` from
+    the reference, (height, width). Where none has come yet, repeats agree with each other on an image that is too
+    dark, and no test that looks at them alone can know.
+    """
+    missing = -sums(difference, tile)
+    return np.asarray((missing > 0) & (missing <= _UNSEEN * max(float(difference.max()), 0.0)))
 
 
 def sums(values: NDArray[np.float64], tile: int) -> NDArray[np.float64]:
