@@ -66,8 +66,9 @@ class Bias:
         shift, half = self.ratio.value - 1, (self.ratio.high - self.ratio.low) / 2
         interval = f"{shift:+.{_digits(half)}%} ± {half:.{_digits(half)}%}"
         if self.is_biased:
-            where = f", {int(self.rejected.sum())} of {self.p_values.size} tiles differ"
-            return f"biased: {interval}{where}, see map"
+            tiles = int(self.rejected.sum())
+            where = f", {tiles} of {self.p_values.size} tiles differ, see map" if tiles else ""
+            return f"biased: {interval}{where}"
         return f"no bias detectable at {LEVEL:.1%} (mean {interval})"
 
 
