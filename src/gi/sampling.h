@@ -13,7 +13,7 @@ inline vec2 uniform_disc(const vec2& u) {
     const float r = wide ? d.x : d.y, other = wide ? d.y : d.x;
     if (r == 0) return d;
     // In the other half of the disc x and y change places, so that the angle is at most pi / 4 from an axis, where
-    // few terms of sine and cosine are exact to a float.
+    // few terms of sine and cosine are right to 4e-7.
     const float phi = (PI / 4) * (other / r), phi2 = phi * phi;
     const float sin = phi * (1 + phi2 * (-1 / 6.f + phi2 * (1 / 120.f - phi2 / 5040)));
     const float cos = 1 + phi2 * (-1 / 2.f + phi2 * (1 / 24.f + phi2 * (-1 / 720.f + phi2 / 40320)));
