@@ -58,7 +58,7 @@ void bind_aovs(nb::module_& m) {
                  return std::make_unique<AovPass>(
                      scene, Sensor{camera, Filter(filter_kind), sampler_kind, seed}, threads);
              }),
-             nb::keep_alive<1, 2>(), nb::arg("scene"), nb::arg("camera"), nb::arg("sampler") = "sobol",
+             nb::keep_alive<0, 2>(), nb::arg("scene"), nb::arg("camera"), nb::arg("sampler") = "sobol",
              nb::arg("filter") = "blackman_harris", nb::arg("seed") = 0, nb::arg("threads") = 0,
              "As of the Renderer whose samples are meant.")
         .def(

@@ -168,7 +168,7 @@ TechniqueImages technique_variances(const TechniqueFilm& film) {
 void bind_techniques(nb::module_& m) {
     nb::class_<TechniqueFilm>(m, "TechniqueFilm",
                               "The picture split by how its light was found: by technique and path length.")
-        .def(nb::new_(&make_technique_film), nb::keep_alive<1, 2>(), nb::arg("renderer"),
+        .def(nb::new_(&make_technique_film), nb::keep_alive<0, 2>(), nb::arg("renderer"),
              nb::arg("max_edges") = 10,
              "For the scene, camera, estimator and samples of `renderer`, from its seed and sample 0. Paths "
              "of more "

@@ -142,7 +142,7 @@ std::optional<Out<double, Split>> contributions(const Renderer& renderer) {
 void bind_renderer(nb::module_& m) {
     nb::class_<Renderer>(m, "Renderer",
                          "Renders a scene into its film, as far as it is asked to, again and again.")
-        .def(nb::new_(&make_renderer), nb::keep_alive<1, 2>(), nb::arg("scene"), nb::arg("camera"),
+        .def(nb::new_(&make_renderer), nb::keep_alive<0, 2>(), nb::arg("scene"), nb::arg("camera"),
              nb::arg("algorithm"), nb::arg("parameters") = std::map<std::string, ParameterValue>{},
              nb::arg("sampler") = "sobol", nb::arg("filter") = "blackman_harris", nb::arg("seed") = 0,
              nb::arg("threads") = 0, nb::arg("first_sample") = 0,
