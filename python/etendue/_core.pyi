@@ -194,13 +194,29 @@ class Scene:
         float32 (n, 3), (n, 3) -> bool (n,): whether anything is between, ends included.
         """
 
-    def sample_light_source(self, u: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
+    def sample_light_source(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], light_choice: str = 'tree') -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
         """
-        u: float32 (n,) in [0, 1) -> index of the light chosen, int32 (n,), -1 without light, and its probability (n,).
+        reference: float32 (n, 3). u: float32 (n,) in [0, 1) -> index of the light chosen there and of the triangle of its
+        mesh, int32 (n,), -1 where there is none to choose, and the probability of that choice (n,).
         """
 
-    def light_source_pdf(self, index: int) -> float:
-        """Probability with which sample_light_source chooses this light."""
+    def sample_light(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], light_choice: str = 'tree') -> dict:
+        """
+        reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). One light sample each, as next event estimation draws it:
+        a dict of index (n,) int32 of the light, -1 where it failed, wi (n, 3), radiance (n, 3), position (n, 3) on the light and
+        pdf (n,), the choice of the light included. Occlusion is not looked at.
+        """
+
+    def light_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], light_choice: str = 'tree') -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
+        """
+        float32 (n, 3), (n, 3) -> index (n,) int32 of the light that each ray finds, -1 for none, and (n,): density of
+        `sample_light` at wi.
+        """
+
+    def light_source_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], index: int, triangle: int = 0, light_choice: str = 'tree') -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+        """
+        float32 (n, 3) -> (n,): probability with which sample_light_source chooses this triangle of this light there.
+        """
 
 class Bsdf:
     """
@@ -265,9 +281,13 @@ class Light:
     def material(self) -> str | None:
         """Name of the material of its mesh; None for the sky."""
 
+    @property
+    def triangle_count(self) -> int:
+        """Of its mesh; 1 for the sky."""
+
     def sample_Li(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> dict:
         """
-        reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). Returns a dict of wi (n, 3), radiance (n, 3), pdf (n,) and
+        reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). Chooses a triangle by its power. Returns a dict of wi (n, 3), radiance (n, 3), pdf (n,), triangle (n,) int32 and
         position (n, 3) on the light; pdf is 0 where the point drawn cannot shine there. Occlusion is not looked at.
         """
 

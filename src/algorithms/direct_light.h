@@ -23,6 +23,20 @@ inline Parameter mis_parameter() {
             {"power", "balance", "none"}};
 }
 
+inline LightSampler::Kind light_choice_of(const Parameters& parameters) {
+    return parameters.get<std::string>("light_choice") == "tree" ? LightSampler::Kind::tree
+                                                                 : LightSampler::Kind::power;
+}
+
+inline Parameter light_choice_parameter() {
+    return {"light_choice",
+            "how a light is chosen; tree: by how much of its light could arrive; power: by its power alone",
+            std::string("tree"),
+            0,
+            0,
+            {LightSampler::names.begin(), LightSampler::names.end()}};
+}
+
 /// Weight of light sampling for a light sample: 1 without MIS.
 inline float light_sampling_weight(Mis mis, float light_pdf, float bsdf_pdf) {
     switch (mis) {
@@ -53,13 +67,18 @@ inline float bsdf_sampling_weight(Mis mis, float bsdf_pdf, float light_pdf) {
 /// The light of one sampled light over one shadow ray, weighted, at the end of a path of `edges` rays with the
 /// throughput of its vertex; 0 at delta surfaces, where it could never be seen.
 inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, const vec3& throughput, int edges,
-                                Mis mis) {
+                                LightSampler::Kind light_choice, Mis mis) {
     if (hit.is_type(BRDF_SPECULAR)) return vec3(0);
-    const float u_light = context.sampler.next_1d();
-    const vec2 u_point = context.sampler.next_2d();
-    const auto choice = context.scene.sample_light_source(u_light);
+    const double finer_digits = context.sampler.next_1d();
+    vec2 u = context.sampler.next_2d();
+    // One number chooses the light and the place along it, so that samples which are stratified over [0, 1) are so over
+    // each light too. What of its digits the choice uses up, others make up for.
+    const vec3& reference = hit.point.position;
+    const auto choice =
+        context.scene.sample_light_source(light_choice, reference, u.x + finer_digits * 0x1p-24);
     if (!choice) return vec3(0);
-    const auto sample = choice->light->sample_Li(hit.point.position, u_point);
+    u.x = choice->remapped;
+    const auto sample = choice->light->sample_Li(reference, choice->triangle, u);
     if (!sample) return vec3(0);
     const vec3 reflected = hit.f(sample->wi) * std::abs(glm::dot(sample->wi, hit.frame.n)) * sample->radiance;
     if (is_black(reflected) || !context.visible(hit, *sample)) return vec3(0);

@@ -15,13 +15,15 @@ class Pathtracer : public Algorithm {
   public:
     explicit Pathtracer(const Parameters& parameters)
         : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")),
+          light_choice_(light_choice_of(parameters)),
           mis_(mis_of(parameters)),
           roulette_(parameters) {}
 
     vec3 radiance(Context& context, Ray ray) const override {
         vec3 radiance(0), throughput(1);
         float eta_scale = 1;
-        // How the ray was chosen: its solid-angle pdf, or by no density at all.
+        // Where the ray comes from, and how it was chosen: its solid-angle pdf, or by no density at all.
+        vec3 prev_position(0);
         float prev_pdf = 0;
         bool prev_delta = true;
         for (int depth = 1;; ++depth) {
@@ -31,7 +33,7 @@ class Pathtracer : public Algorithm {
                 Contribution found{Technique::bsdf_sampling, depth, throughput * hit.Le()};
                 if (!prev_delta) {
                     found.pdf = prev_pdf;
-                    found.other_pdf = light_pdf(context, hit);
+                    found.other_pdf = light_pdf(context, prev_position, hit);
                     found.weight = bsdf_sampling_weight(mis_, found.pdf, found.other_pdf);
                 }
                 radiance += context.light(found);
@@ -40,7 +42,7 @@ class Pathtracer : public Algorithm {
 
             // Light sampled on purpose, one edge further.
             context.sampler.start_vertex(depth);
-            radiance += sample_direct_light(context, hit, throughput, depth + 1, mis_);
+            radiance += sample_direct_light(context, hit, throughput, depth + 1, light_choice_, mis_);
 
             // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
             const auto bounce = context.bounce(hit);
@@ -50,6 +52,7 @@ class Pathtracer : public Algorithm {
             if (is_black(throughput)) break;
 
             if (!roulette_.survives(context, throughput, eta_scale, depth)) break;
+            prev_position = hit.point.position;
             prev_pdf = bounce->pdf;
             prev_delta = bounce->is_delta();
             ray = hit.ray_towards(bounce->wi);
@@ -60,16 +63,19 @@ class Pathtracer : public Algorithm {
     static std::vector<Parameter> parameters() {
         auto all = RussianRoulette::parameters();
         all.push_back(max_path_length_parameter());
+        all.push_back(light_choice_parameter());
         all.push_back(mis_parameter());
         return all;
     }
 
   private:
-    static float light_pdf(const Context& context, const SurfaceHit& hit) {
-        return context.scene.light_source_pdf(hit.light) * hit.light->pdf_Li(hit);
+    float light_pdf(const Context& context, const vec3& reference, const SurfaceHit& hit) const {
+        return context.scene.light_source_pdf(light_choice_, reference, hit.light, hit.triangle) *
+               hit.light->pdf_Li(hit);
     }
 
     const int MAX_CAM_PATH_LENGTH;
+    const LightSampler::Kind light_choice_;
     const Mis mis_;
     const RussianRoulette roulette_;
 };

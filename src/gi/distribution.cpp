@@ -7,7 +7,7 @@ Distribution1D::Distribution1D(std::span<const double> weights) : cumulative_(we
     total_ = cumulative_.back();
 }
 
-Distribution1D::Choice Distribution1D::sample(float u) const {
+Distribution1D::Choice Distribution1D::sample(double u) const {
     const double target = u * total_;
     // The last cell that begins at the target or before; as the target is below the total, it has a weight.
     uint32_t index = 0;

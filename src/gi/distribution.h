@@ -21,7 +21,7 @@ class Distribution1D {
     explicit Distribution1D(std::span<const double> weights);
 
     /// Inverts the cumulative sum at u in [0, 1). Needs total() > 0; never chooses a weight of zero.
-    Choice sample(float u) const;
+    Choice sample(double u) const;
 
     float pmf(uint32_t index) const {
         return static_cast<float>((cumulative_[index + 1] - cumulative_[index]) / total_);

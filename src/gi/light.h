@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "gi/light_sample.h"
+#include "gi/light_tree.h"
 #include "light_list.h"  // made by CMakeLists.txt: includes lights/*.h and defines ETENDUE_LIGHTS
 
 namespace etendue {
@@ -16,12 +17,12 @@ class Light {
     /// All lights of a scene, kind by kind, as each kind finds its own.
     static std::vector<Light> find_all(const LightContext& context);
 
-    /// Empty where the point drawn cannot shine on `reference`.
-    std::optional<LightSample> sample_Li(const vec3& reference, const vec2& u) const {
-        return std::visit([&](const auto& light) { return light.sample_Li(reference, u); }, kind_);
+    /// A point of one triangle of the light's mesh, or of the whole sky. Empty where it cannot shine on `reference`.
+    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u) const {
+        return std::visit([&](const auto& light) { return light.sample_Li(reference, triangle, u); }, kind_);
     }
     /// Density with which sample_Li would have drawn the direction `-hit.wo` in which a ray from the
-    /// reference point, `hit.distance` away, found this light.
+    /// reference point, `hit.distance` away, found this triangle of the light.
     float pdf_Li(const SurfaceHit& hit) const {
         return std::visit([&](const auto& light) { return light.pdf_Li(hit); }, kind_);
     }
@@ -37,6 +38,15 @@ class Light {
     /// chosen.
     float power() const {
         return std::visit([](const auto& light) { return light.power(); }, kind_);
+    }
+    /// Of one triangle of its mesh: where it is, where it faces, and its power.
+    EmitterBounds bounds(uint32_t triangle) const {
+        return std::visit(
+            [&](const auto& light) {
+                if constexpr (requires { light.bounds(triangle); }) return light.bounds(triangle);
+                return EmitterBounds{};
+            },
+            kind_);
     }
     std::string_view name() const {
         return std::visit([](const auto& light) { return light.name; }, kind_);

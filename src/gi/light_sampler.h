@@ -1,40 +1,52 @@
-// Which light to sample: chosen by power.
+// Which light to sample, and which of its triangles.
 #pragma once
+
+#include <array>
+#include <string_view>
 
 #include "gi/distribution.h"
 #include "gi/light.h"
+#include "gi/light_tree.h"
 
 namespace etendue {
 
 class LightSampler {
   public:
+    /// `power`: by what triangles emit, from everywhere alike. `tree`: by how much of it could arrive at the reference
+    /// point. The sky, infinitely far away, is chosen by its power in both.
+    enum class Kind : uint8_t { tree, power };
+    static constexpr std::array<std::string_view, 2> names{"tree", "power"};
+
     struct Choice {
         const Light* light;
+        uint32_t triangle;  // of the light's mesh; 0 for the sky
         float pmf;
         float remapped;  // `u`, uniform in [0, 1) again
     };
 
     LightSampler() = default;
-    explicit LightSampler(std::span<const Light> lights) : lights_(lights) {
-        std::vector<double> powers;
-        for (const Light& light : lights) powers.push_back(light.power());
-        by_power_ = Distribution1D(powers);
-    }
+    explicit LightSampler(std::span<const Light> lights);
 
-    /// Empty in a scene without light.
-    std::optional<Choice> sample(float u) const {
-        if (by_power_.total() <= 0) return std::nullopt;
-        const auto choice = by_power_.sample(u);
-        return Choice{&lights_[choice.index], choice.pmf, choice.remapped};
-    }
-
-    float pmf(const Light* light) const {
-        return by_power_.pmf(static_cast<uint32_t>(light - lights_.data()));
-    }
+    /// Empty in a scene without light, or where the tree knows of none that could arrive. `u` in [0, 1) has more digits
+    /// than a float, as many as both the choice and `remapped` need.
+    std::optional<Choice> sample(Kind kind, const vec3& reference, double u) const;
+    float pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle) const;
 
   private:
+    struct Emitter {
+        const Light* light;
+        uint32_t triangle;
+    };
+
     std::span<const Light> lights_;
+    // All triangles of all lights, then the sky.
+    std::vector<Emitter> emitters_;
+    std::vector<uint32_t> first_;  // emitter of each light
     Distribution1D by_power_;
+    LightTree tree_;
+    double triangles_share_ = 0;  // of the power, with which the tree is asked; 0 without one
+    // Of the two halves of a rectangle neither is nearer than the other.
+    static constexpr size_t WORTH_A_TREE = 3;
 };
 
 }  // namespace etendue

@@ -41,12 +41,16 @@ class Scene {
     /// Traces all of these and does nothing else, as fast as the library does. Returns how many hit something.
     uint64_t trace(std::span<const TracedRay> rays) const;
 
-    /// A light with probability proportional to its power; empty in a scene without light.
-    std::optional<LightSampler::Choice> sample_light_source(float u) const {
-        return light_sampler_.sample(u);
+    /// A light, and a triangle of it, for a reference point; empty where there is none to choose.
+    std::optional<LightSampler::Choice> sample_light_source(LightSampler::Kind kind, const vec3& reference,
+                                                            double u) const {
+        return light_sampler_.sample(kind, reference, u);
     }
-    /// Probability with which sample_light_source chooses the light.
-    float light_source_pdf(const Light* light) const { return light_sampler_.pmf(light); }
+    /// Probability with which sample_light_source chooses this triangle of the light; 0 for the sky.
+    float light_source_pdf(LightSampler::Kind kind, const vec3& reference, const Light* light,
+                           uint32_t triangle) const {
+        return light_sampler_.pmf(kind, reference, light, triangle);
+    }
 
     const std::vector<Light>& lights() const { return lights_; }
     const std::vector<Mesh>& meshes() const;

@@ -34,6 +34,7 @@ class Mutant:
 ANALYTIC = "tests/estimators/test_analytic.py"
 BSDF = "tests/statistics/test_bsdf_sampling.py"
 LIGHTS = "tests/statistics/test_light_sampling.py"
+CHOICE = "tests/statistics/test_light_choice.py"
 SAMPLER = "tests/statistics/test_sampler.py"
 
 
@@ -59,8 +60,8 @@ MUTANTS = (
     Mutant(
         "light-selection probability missing in the weight of light found by chance",
         "algorithms/pathtracer.cpp",
-        "context.scene.light_source_pdf(hit.light) * hit.light->pdf_Li(hit)",
-        "hit.light->pdf_Li(hit)",
+        "context.scene.light_source_pdf(light_choice_, reference, hit.light, hit.triangle)",
+        "1",
         (ANALYTIC, "-k", "two_lamps"),
     ),
     Mutant(
@@ -73,8 +74,8 @@ MUTANTS = (
     Mutant(
         "area pdf not converted to solid angle",
         "gi/lights/area_light.cpp",
-        "distance2 / (cos_light * area_)",
-        "1 / area_",
+        "distance2 / (cos_light * mesh_->area(triangle))",
+        "1 / mesh_->area(triangle)",
         (ANALYTIC, "-k", "disc_over"),
     ),
     Mutant(
@@ -85,11 +86,18 @@ MUTANTS = (
         (ANALYTIC, "-k", "back_of_a_lamp"),
     ),
     Mutant(
-        "triangles of a light chosen alike, whatever their area",
+        "triangles of a light taken for equally large",
         "gi/lights/area_light.cpp",
-        "mesh.area(static_cast<uint32_t>(i))",
-        "mesh.area(0)",
-        (ANALYTIC, "-k", "sphere_over"),
+        "mesh_->area(hit.triangle)",
+        "mesh_->area(0)",
+        (LIGHTS, "-k", "unequal_triangles"),
+    ),
+    Mutant(
+        "light tree that forgets half of a child in its probabilities",
+        "gi/light_tree.cpp",
+        "pmf *= importance[slot] / total",
+        "pmf *= importance[slot] / (total - 0.5f * importance[0])",
+        (CHOICE,),
     ),
     Mutant(
         "points crowd in a corner of a triangle",

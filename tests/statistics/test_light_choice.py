@@ -1,10 +1,13 @@
-"""Lights are chosen with the probability that light_source_pdf says, which is their share of the power."""
+"""Lights, and triangles of them, are chosen with the probability that light_source_pdf says."""
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
-from light_scenes import GREY, SCENES, lamp, sky, square
+from light_scenes import GREY, REFERENCES, SCENES, lamp, mesh, rows, sky, square
+from numpy.typing import NDArray
 from stats import chi_square, sidak
 
 from etendue import _core
@@ -18,28 +21,117 @@ def many_lamps() -> _core.Scene:
     return _core.Scene(meshes, materials, sky=_core.Sky(None, 0.5))
 
 
-ALL = SCENES | {"many_lamps": many_lamps}
+def sphere_of_lamps() -> _core.Scene:
+    """500 triangles that face everywhere, in clusters of all sizes, areas and strengths."""
+    rng = np.random.default_rng(12)
+    meshes, strengths = [], np.geomspace(0.1, 100, 10)
+    for i in range(10):
+        centre = rng.normal(0, 4, 3)
+        corners = (
+            centre + rng.normal(0, 0.5, (50, 1, 3)) + rng.normal(0, 10 ** rng.uniform(-2, -0.5), (50, 3, 3))
+        )
+        meshes.append(mesh(corners.reshape(-1, 3), np.arange(150).reshape(-1, 3), material=i))
+    return _core.Scene(meshes, [lamp(emissive_strength=float(s)) for s in strengths])
+
+
+ALL = SCENES | {"many_lamps": many_lamps, "sphere_of_lamps": sphere_of_lamps}
+KINDS = ("tree", "power")
+
+
+def triangles(scene: _core.Scene) -> list[tuple[int, int]]:
+    """(light, triangle) of all; what has no mesh has one, of number 0."""
+    return [(i, t) for i, light in enumerate(scene.lights) for t in range(light.triangle_count)]
+
+
+def probabilities(scene: _core.Scene, reference: NDArray[np.float32], kind: str) -> NDArray[np.float64]:
+    return np.array(
+        [scene.light_source_pdf(reference[None], i, t, kind)[0] for i, t in triangles(scene)], dtype=float
+    )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", ALL)
+def test_frequencies(name: str, kind: str) -> None:
+    scene = ALL[name]()
+    number = {which: n for n, which in enumerate(triangles(scene))}
+    for reference in REFERENCES:
+        expected = probabilities(scene, reference, kind)
+        # The tree may lead to where no light can come from, and then chooses none.
+        failed = 1 - expected.sum()
+        assert failed > -1e-5
+        assert kind == "tree" or failed < 1e-5
+        n = 100_000
+        u = np.random.default_rng(1).random(n, dtype=np.float32)
+        index, triangle, pdf = scene.sample_light_source(rows(reference, n), u, kind)
+        chosen = np.array(
+            [number.get(which, -1) for which in zip(index.tolist(), triangle.tolist(), strict=True)]
+        )
+        counts = np.bincount(chosen + 1, minlength=len(number) + 1)
+        all_of_them = np.concatenate([[max(failed, 0)], expected])
+        assert chi_square(counts, all_of_them * n).p > sidak(len(ALL) * len(KINDS) * len(REFERENCES))
+        np.testing.assert_allclose(pdf[chosen >= 0], expected[chosen[chosen >= 0]], rtol=1e-5)
+        assert not pdf[chosen < 0].any()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", ALL)
+def test_even_numbers_choose_evenly(name: str, kind: str) -> None:
+    """Numbers that fill [0, 1) evenly choose each triangle as often as they can, to one."""
+    scene = ALL[name]()
+    for reference in REFERENCES[:2]:
+        u = ((np.arange(2**16) + 0.5) / 2**16).astype(np.float32)
+        index, triangle, _ = scene.sample_light_source(rows(reference, len(u)), u, kind)
+        for (i, t), p in zip(triangles(scene), probabilities(scene, reference, kind), strict=True):
+            assert abs(((index == i) & (triangle == t)).sum() - p * 2**16) <= 1.1
+        ends = np.array([0, 1e-30, 1 - 2**-24], dtype=np.float32)
+        index, triangle, pdf = scene.sample_light_source(rows(reference, 3), ends, kind)
+        assert (pdf[index >= 0] > 0).all()
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_frequencies(name: str) -> None:
+def test_by_power(name: str) -> None:
+    """A light's triangles have its share of the power, wherever they are looked at from."""
     scene = ALL[name]()
-    probabilities = np.array([scene.light_source_pdf(i) for i in range(len(scene.lights))], dtype=float)
     powers = np.array([light.power for light in scene.lights], dtype=float)
-    np.testing.assert_allclose(probabilities, powers / powers.sum(), rtol=1e-5)
-    assert probabilities.sum() == pytest.approx(1, abs=1e-6)
-    u = np.random.default_rng(1).random(200_000, dtype=np.float32)
-    index, pdf = scene.sample_light_source(u)
-    counts = np.bincount(index, minlength=len(powers))
-    assert chi_square(counts, probabilities * len(u)).p > sidak(len(ALL))
-    np.testing.assert_allclose(pdf, probabilities[index], rtol=1e-6)
-    # Numbers that fill [0, 1) evenly choose each light as often as they can, to one.
-    index, _ = scene.sample_light_source(((np.arange(2**16) + 0.5) / 2**16).astype(np.float32))
-    assert np.abs(np.bincount(index, minlength=len(powers)) - probabilities * 2**16).max() <= 1
-    ends = np.array([0, 1e-30, 1 - 2**-24], dtype=np.float32)
-    index, pdf = scene.sample_light_source(ends)
-    assert (probabilities[index] > 0).all()
-    assert (pdf > 0).all()
+    for reference in REFERENCES:
+        share = np.zeros(len(powers))
+        for (i, _), p in zip(triangles(scene), probabilities(scene, reference, "power"), strict=True):
+            share[i] += p
+        np.testing.assert_allclose(share, powers / powers.sum(), rtol=1e-4)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_tree_leaves_out_no_light(name: str) -> None:
+    """What can shine on a point, as samples by power show, may be chosen there."""
+    scene = ALL[name]()
+    rng = np.random.default_rng(3)
+    references = np.concatenate([REFERENCES, rng.normal(0, 3, (40, 3)).astype(np.float32)])
+    for reference, light_index in itertools.product(references, range(len(scene.lights))):
+        light = scene.lights[light_index]
+        if light.power == 0:
+            continue
+        u = rng.random((2000, 2), dtype=np.float32)
+        sample = light.sample_Li(rows(reference, len(u)), u)
+        shines = (sample["pdf"] > 0) & (sample["radiance"] > 0).any(axis=1)
+        assert sample["triangle"].min() >= 0
+        for t in np.unique(sample["triangle"][shines]):
+            assert scene.light_source_pdf(reference[None], light_index, int(t), "tree")[0] > 0
+
+
+def test_the_tree_prefers_what_is_near_and_faces_the_point() -> None:
+    """On a quarter of the distance 16 times as often; what shows its back never."""
+    near_and_far = _core.Scene(
+        [
+            square(10, 0.1),
+            square(40, 0.1, 1),
+            mesh([(-1, 5, 0), (1, 5, 0), (0, 5, 1)], [(0, 2, 1)], material=2),
+        ],
+        [lamp()] * 3,
+    )
+    p = probabilities(near_and_far, np.zeros(3, np.float32), "tree")
+    assert p[:2].sum() / p[2:4].sum() == pytest.approx(16, rel=0.01)
+    assert p[4] == 0
+    assert p.sum() == pytest.approx(1, abs=1e-5)
 
 
 def test_powers() -> None:
@@ -74,6 +166,9 @@ def test_without_light_nothing_is_chosen() -> None:
         sky(np.zeros((2, 4, 3))),
         _core.Scene([square()], [lamp(albedo=(0, 0, 0))]),
     ):
-        index, pdf = scene.sample_light_source(np.array([0, 0.5, 0.99], np.float32))
-        assert (index == -1).all()
-        assert not pdf.any()
+        for kind in KINDS:
+            u = np.array([0, 0.5, 0.99], np.float32)
+            index, triangle, pdf = scene.sample_light_source(np.zeros((3, 3), np.float32), u, kind)
+            assert (index == -1).all()
+            assert (triangle == -1).all()
+            assert not pdf.any()

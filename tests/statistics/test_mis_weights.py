@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from etendue import _core
 
 HEURISTICS = next(p.choices for a in _core.algorithms() for p in a.parameters if p.name == "mis")
+LIGHT_CHOICES = next(p.choices for a in _core.algorithms() for p in a.parameters if p.name == "light_choice")
 SURFACES = [case for case in cases(("",), (0.01, 0.1, 0.6)) if case.bsdf != "light"]
 
 # The surface at the reference point faces up: local (x, y, z) is world (x, z, y), mirrored to stay
@@ -49,7 +50,7 @@ def test_weights_of_any_pair(mis: str) -> None:
 
 
 def recorded(
-    name: str, which: int, case_index: int, from_light: bool
+    name: str, which: int, case_index: int, from_light: bool, light_choice: str
 ) -> tuple[
     NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]
 ]:
@@ -63,15 +64,13 @@ def recorded(
     there = rows(reference, n)
     own = np.zeros(n, dtype=np.float32)
     if from_light:
-        chosen, probability = scene.sample_light_source(rng.random(n, dtype=np.float32))
+        sample = scene.sample_light(there, rng.random((n, 2), dtype=np.float32), light_choice)
+        chosen = sample["index"]
         wi = np.zeros((n, 3), dtype=np.float32)
-        u = rng.random((n, 2), dtype=np.float32)
         for i, light in enumerate(scene.lights):
-            sample = light.sample_Li(there, u)
-            mine = chosen == i
             # What hides the point that was drawn, another part of the same light even, keeps its light away.
-            visible = mine & seen(scene, light, reference, sample)
-            wi[visible], own[visible] = sample["wi"][visible], (sample["pdf"] * probability)[visible]
+            visible = (chosen == i) & seen(scene, light, reference, sample)
+            wi[visible], own[visible] = sample["wi"][visible], sample["pdf"][visible]
     else:
         sample = bsdf.sample(rows(WO, n), rng.random((n, 3), dtype=np.float32))
         wi, own = sample["wi"] @ TO_LOCAL, np.where(sample["type"] > 0, sample["pdf"], 0)
@@ -79,11 +78,8 @@ def recorded(
     wi = np.ascontiguousarray(wi)
     good = own > 0
     wi[~good] = [0, 1, 0]
-    light_pdf, found = np.zeros(n, dtype=np.float32), np.full(n, -1)
-    for i, light in enumerate(scene.lights):
-        pdf = light.pdf_Li(there, wi)
-        found = np.where(pdf > 0, i, found)
-        light_pdf += pdf * scene.light_source_pdf(i)
+    found, light_pdf = scene.light_pdf(there, wi, light_choice)
+    found = np.where(light_pdf > 0, found, -1)
     bsdf_pdf = bsdf.pdf(rows(WO, n), np.ascontiguousarray(wi @ TO_LOCAL.T))
     good &= (found == chosen) & (found >= 0) if from_light else found >= 0
     return wi[good], found[good], own[good], light_pdf[good], bsdf_pdf[good]
@@ -91,7 +87,8 @@ def recorded(
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("mis", [m for m in HEURISTICS if m != "none"])
-def test_recorded_pairs(name: str, mis: str) -> None:
+@pytest.mark.parametrize("light_choice", LIGHT_CHOICES)
+def test_recorded_pairs(name: str, mis: str, light_choice: str) -> None:
     """
     At a vertex under each light, of each BSDF: what light sampling weights a direction with and what BSDF
     sampling weights the same direction with add up to 1, though each learns its own density by drawing and
@@ -100,7 +97,7 @@ def test_recorded_pairs(name: str, mis: str) -> None:
     pairs = 0
     for which, case_index in itertools.product((0, 1), range(0, len(SURFACES), 2)):
         for from_light in (True, False):
-            _, _, own, light_pdf, bsdf_pdf = recorded(name, which, case_index, from_light)
+            _, _, own, light_pdf, bsdf_pdf = recorded(name, which, case_index, from_light, light_choice)
             looked_up = light_pdf if from_light else bsdf_pdf
             same = np.isclose(own, looked_up, rtol=1e-2)
             assert (~same).sum() <= 5 + 0.005 * len(same)  # rays that just miss an edge

@@ -73,7 +73,7 @@ vec3 SkyLight::radiance_at(const vec2& uv) const {
     return glm::mix(top, bottom, y - y_floor) * sky_->intensity;
 }
 
-std::optional<LightSample> SkyLight::sample_Li(const vec3&, const vec2& u) const {
+std::optional<LightSample> SkyLight::sample_Li(const vec3&, uint32_t, const vec2& u) const {
     if (sky_->width == 0) {
         return LightSample{vec3(sky_->intensity), uniform_sphere(u), UNIFORM_SPHERE_PDF, {}, true};
     }

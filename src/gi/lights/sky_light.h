@@ -27,7 +27,7 @@ class SkyLight {
 
     SkyLight(const Sky& sky, float scene_radius);
 
-    std::optional<LightSample> sample_Li(const vec3& reference, const vec2& u) const;
+    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u) const;
     float pdf_Li(const SurfaceHit& miss) const { return pdf(-miss.wo); }
     vec3 Le(const SurfaceHit& miss) const { return Le(-miss.wo); }
     vec3 Le(const vec3& direction) const;

@@ -1,0 +1,54 @@
+#include "gi/light_sampler.h"
+
+namespace etendue {
+
+LightSampler::LightSampler(std::span<const Light> lights) : lights_(lights), first_(lights.size()) {
+    std::vector<EmitterBounds> bounds;
+    std::vector<double> powers;
+    const auto add = [&](size_t i, uint32_t triangle, double power) {
+        emitters_.push_back({&lights[i], triangle});
+        powers.push_back(power);
+    };
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].mesh()) continue;
+        first_[i] = static_cast<uint32_t>(emitters_.size());
+        for (uint32_t triangle = 0; triangle < lights[i].mesh()->triangles.size(); ++triangle) {
+            bounds.push_back(lights[i].bounds(triangle));
+            add(i, triangle, bounds.back().power);
+        }
+    }
+    for (size_t i = 0; i < lights.size(); ++i) {
+        if (lights[i].mesh()) continue;
+        first_[i] = static_cast<uint32_t>(emitters_.size());
+        add(i, 0, lights[i].power());
+    }
+    by_power_ = Distribution1D(powers);
+    if (bounds.size() < WORTH_A_TREE || by_power_.total() <= 0) return;
+    tree_ = LightTree(bounds);
+    double of_triangles = 0;
+    for (const EmitterBounds& emitter : bounds) of_triangles += emitter.power;
+    triangles_share_ = of_triangles / by_power_.total();
+}
+
+std::optional<LightSampler::Choice> LightSampler::sample(Kind kind, const vec3& reference, double u) const {
+    if (by_power_.total() <= 0) return std::nullopt;
+    if (kind == Kind::tree && u < triangles_share_) {
+        const auto choice = tree_.sample(reference, u / triangles_share_);
+        if (!choice) return std::nullopt;
+        const auto [light, triangle] = emitters_[choice->emitter];
+        return Choice{light, triangle, static_cast<float>(triangles_share_) * choice->pmf,
+                      std::min(static_cast<float>(choice->remapped), ONE_MINUS_EPSILON)};
+    }
+    const auto choice = by_power_.sample(u);
+    const auto [light, triangle] = emitters_[choice.index];
+    return Choice{light, triangle, choice.pmf, choice.remapped};
+}
+
+float LightSampler::pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle) const {
+    if (by_power_.total() <= 0) return 0;
+    const uint32_t emitter = first_[light - lights_.data()] + triangle;
+    if (kind == Kind::power || triangles_share_ == 0 || !light->mesh()) return by_power_.pmf(emitter);
+    return static_cast<float>(triangles_share_) * tree_.pmf(reference, emitter);
+}
+
+}  // namespace etendue

@@ -1,0 +1,210 @@
+#include "gi/light_tree.h"
+
+#include <numeric>
+
+namespace etendue {
+
+namespace {
+
+/// A direction turned towards another by an angle; both unit.
+vec3 turned(const vec3& from, const vec3& to, float angle) {
+    const vec3 aside = to - glm::dot(to, from) * from;
+    const float length = glm::length(aside);
+    // Opposite directions: any way round will do.
+    const vec3 tangent = length > 1e-6f ? aside / length : Frame(from).s;
+    return std::cos(angle) * from + std::sin(angle) * tangent;
+}
+
+/// How much emitters are worth keeping apart: power, by the size of their bounds and of the solid angle that they
+/// shine into (Conty Estevez and Kulla 2018, 4.1, the surface area orientation heuristic).
+float cost(const EmitterBounds& bounds) {
+    if (bounds.normals.is_empty()) return 0;
+    const float o = bounds.normals.angle(), w = std::min(o + PI / 2, PI);
+    const float solid_angle =
+        2 * PI * (1 - std::cos(o)) +
+        PI / 2 * (2 * w * std::sin(o) - std::cos(o - 2 * w) - 2 * o * std::sin(o) + std::cos(o));
+    const vec3 size = bounds.upper - bounds.lower;
+    return bounds.power * solid_angle * (size.x * size.y + size.y * size.z + size.z * size.x);
+}
+
+/// Some emitters, by their indices, and their bounds.
+struct Part {
+    std::span<uint32_t> indices;
+    EmitterBounds bounds;
+
+    Part(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices) : indices(indices) {
+        for (const uint32_t i : indices) bounds = bounds.united(emitters[i]);
+    }
+};
+
+/// Cuts across the longest side of where the emitters are, at the place of least cost among a few, and returns how many
+/// of the indices are then before it. Deep down in halves, so that the tree has an end.
+size_t cut(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices, uint32_t depth) {
+    constexpr uint32_t DEEP = 10;
+    constexpr int BUCKETS = 12;
+    vec3 lower(INFINITE), upper(-INFINITE);
+    for (const uint32_t i : indices) {
+        lower = glm::min(lower, emitters[i].centre());
+        upper = glm::max(upper, emitters[i].centre());
+    }
+    const vec3 size = upper - lower;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    if (size[axis] <= 0 || depth > DEEP) return indices.size() / 2;
+    const auto bucket_of = [&](uint32_t i) {
+        const float at = (emitters[i].centre()[axis] - lower[axis]) / size[axis];
+        return std::min(static_cast<int>(at * BUCKETS), BUCKETS - 1);
+    };
+    std::array<EmitterBounds, BUCKETS> buckets;
+    for (const uint32_t i : indices) {
+        EmitterBounds& bucket = buckets[bucket_of(i)];
+        bucket = bucket.united(emitters[i]);
+    }
+    float least = INFINITE;
+    int best = 1;
+    for (int end = 1; end < BUCKETS; ++end) {
+        EmitterBounds before, after;
+        for (int i = 0; i < BUCKETS; ++i)
+            (i < end ? before : after) = (i < end ? before : after).united(buckets[i]);
+        const float of_cut = cost(before) + cost(after);
+        if (before.power > 0 && after.power > 0 && of_cut < least) least = of_cut, best = end;
+    }
+    const auto middle =
+        std::partition(indices.begin(), indices.end(), [&](uint32_t i) { return bucket_of(i) < best; });
+    return static_cast<size_t>(middle - indices.begin());
+}
+
+}  // namespace
+
+Cone Cone::united(const Cone& other) const {
+    if (is_empty()) return other;
+    if (other.is_empty()) return *this;
+    const float a = angle(), b = other.angle();
+    const float between = std::acos(std::clamp(glm::dot(axis, other.axis), -1.f, 1.f));
+    if (std::min(between + b, PI) <= a) return *this;
+    if (std::min(between + a, PI) <= b) return other;
+    const float half = (a + between + b) / 2;
+    if (half >= PI) return {axis, -1};
+    return {turned(axis, other.axis, half - a), std::cos(half)};
+}
+
+EmitterBounds EmitterBounds::united(const EmitterBounds& other) const {
+    return {glm::min(lower, other.lower), glm::max(upper, other.upper), normals.united(other.normals),
+            power + other.power};
+}
+
+void LightTree::Node::set(uint32_t slot, const EmitterBounds& bounds) {
+    const vec3 centre = bounds.centre();
+    x[slot] = centre.x, y[slot] = centre.y, z[slot] = centre.z;
+    // A little more than the bounds and the angles are, so that rounding never takes an emitter for unable to shine.
+    radius[slot] = 1.001f * glm::length(bounds.upper - bounds.lower) / 2;
+    axis_x[slot] = bounds.normals.axis.x, axis_y[slot] = bounds.normals.axis.y,
+    axis_z[slot] = bounds.normals.axis.z;
+    const float angle = std::min(bounds.normals.angle() + 1e-3f, PI);
+    cos_angle[slot] = std::cos(angle), sin_angle[slot] = std::sin(angle);
+    power[slot] = bounds.power;
+}
+
+LightTree::LightTree(std::span<const EmitterBounds> emitters) : ways_(emitters.size()) {
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i < emitters.size(); ++i) {
+        if (emitters[i].power > 0) indices.push_back(i);
+    }
+    if (!indices.empty()) build(emitters, indices, 0, 0);
+}
+
+uint32_t LightTree::build(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices, uint64_t path,
+                          uint32_t depth) {
+    // The costliest part is cut again, until there are as many as a node holds.
+    std::vector<Part> parts{{emitters, indices}};
+    while (parts.size() < WIDTH) {
+        const auto costliest = std::ranges::max_element(
+            parts, {}, [](const Part& part) { return part.indices.size() == 1 ? -1 : cost(part.bounds); });
+        if (costliest->indices.size() == 1) break;
+        const std::span<uint32_t> whole = costliest->indices;
+        const size_t before = cut(emitters, whole, depth);
+        *costliest = {emitters, whole.first(before)};
+        parts.emplace_back(emitters, whole.subspan(before));
+    }
+    const auto index = static_cast<uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    for (uint32_t slot = 0; slot < parts.size(); ++slot) {
+        const uint64_t way = path | uint64_t{slot} << (BITS * depth);
+        nodes_[index].set(slot, parts[slot].bounds);
+        uint32_t child;
+        if (parts[slot].indices.size() == 1) {
+            child = LEAF | parts[slot].indices[0];
+            ways_[parts[slot].indices[0]] = {way, depth + 1};
+        } else {
+            child = build(emitters, parts[slot].indices, way, depth + 1);
+        }
+        nodes_[index].child[slot] = child;
+    }
+    return index;
+}
+
+LightTree::Importances LightTree::importances(const Node& node, const vec3& reference) {
+    Importances out;
+    for (uint32_t i = 0; i < WIDTH; ++i) {
+        const float x = reference.x - node.x[i], y = reference.y - node.y[i], z = reference.z - node.z[i];
+        const float radius2 = node.radius[i] * node.radius[i];
+        const float distance2 = std::max(x * x + y * y + z * z, std::numeric_limits<float>::min());
+        const float inverse = 1 / std::sqrt(distance2);
+        // Half the angle under which the bounding sphere is seen.
+        const float sin_sphere = std::min(node.radius[i] * inverse, 1.f);
+        const float cos_sphere = std::sqrt(1 - sin_sphere * sin_sphere);
+        const float cos_axis =
+            std::clamp((node.axis_x[i] * x + node.axis_y[i] * y + node.axis_z[i] * z) * inverse, -1.f, 1.f);
+        const float sin_axis = std::sqrt(1 - cos_axis * cos_axis);
+        // What is left of the angle to the axis when the normals turn towards the reference as far as they may, and
+        // the emitter moves within the sphere.
+        const bool in_cone = cos_axis >= node.cos_angle[i];
+        const float cos_1 = in_cone ? 1 : cos_axis * node.cos_angle[i] + sin_axis * node.sin_angle[i];
+        const float sin_1 = in_cone ? 0 : sin_axis * node.cos_angle[i] - cos_axis * node.sin_angle[i];
+        const bool in_sphere = (cos_1 >= cos_sphere) | (distance2 <= radius2);
+        const float cos_2 = in_sphere ? 1 : cos_1 * cos_sphere + sin_1 * sin_sphere;
+        out[i] = node.power[i] * std::max(cos_2, 0.f) / std::max(distance2, radius2);
+    }
+    return out;
+}
+
+std::optional<LightTree::Choice> LightTree::sample(const vec3& reference, double u) const {
+    if (nodes_.empty()) return std::nullopt;
+    float pmf = 1;
+    for (uint32_t index = 0; !(index & LEAF);) {
+        const Node& node = nodes_[index];
+        const Importances importance = importances(node, reference);
+        const float total = std::accumulate(importance.begin(), importance.end(), 0.f);
+        if (total <= 0) return std::nullopt;
+        const double target = u * total;
+        double from = 0, chosen_from = 0;
+        uint32_t chosen = 0;
+        for (uint32_t slot = 0; slot < WIDTH && from <= target; ++slot) {
+            if (importance[slot] == 0) continue;
+            chosen = slot, chosen_from = from;
+            from += importance[slot];
+        }
+        pmf *= importance[chosen] / total;
+        u = std::clamp((target - chosen_from) / importance[chosen], 0., 1 - 0x1p-53);
+        index = node.child[chosen];
+        if (index & LEAF) return Choice{index & ~LEAF, pmf, u};
+    }
+    return std::nullopt;
+}
+
+float LightTree::pmf(const vec3& reference, uint32_t emitter) const {
+    const auto [slots, length] = ways_[emitter];
+    float pmf = length > 0 ? 1 : 0;
+    uint32_t index = 0;
+    for (uint32_t depth = 0; depth < length; ++depth) {
+        const Node& node = nodes_[index];
+        const Importances importance = importances(node, reference);
+        const float total = std::accumulate(importance.begin(), importance.end(), 0.f);
+        if (total <= 0) return 0;
+        const uint32_t slot = slots >> (BITS * depth) & (WIDTH - 1);
+        pmf *= importance[slot] / total;
+        index = node.child[slot];
+    }
+    return pmf;
+}
+
+}  // namespace etendue
