@@ -11,6 +11,7 @@ namespace etendue {
 namespace {
 
 using Colour = std::array<float, 3>;
+using Indices = In<uint32_t, nb::shape<-1, 3>>;
 
 std::shared_ptr<Texture> make_texture(const nb::ndarray<nb::c_contig, nb::device::cpu, nb::ro>& pixels,
                                       bool srgb) {
@@ -57,40 +58,68 @@ PythonMaterial make_material(const std::string& name, const std::string& type, c
     return python;
 }
 
-Mesh make_mesh(const Vectors3& vertices, const In<uint32_t, nb::shape<-1, 3>>& triangles,
-               std::optional<Vectors3> normals, std::optional<Vectors2> uvs, uint32_t material) {
-    Mesh mesh;
-    const size_t n = vertices.shape(0), m = triangles.shape(0);
-    mesh.vertices.resize(n + 1);
-    mesh.triangles.resize(m);
-    for (size_t i = 0; i < n; ++i) mesh.vertices[i] = vec3_at(vertices, i);
-    for (size_t i = 0; i < n; ++i) {
-        const vec3 reach = glm::abs(mesh.vertices[i]);
-        // Written so that NaN counts as too far.
-        if (!(reach.x <= Mesh::FARTHEST && reach.y <= Mesh::FARTHEST && reach.z <= Mesh::FARTHEST)) {
-            throw std::invalid_argument("vertex " + std::to_string(i) + " is not finite, or too far away");
+/// The arrays of a mesh as Python has them, which are copied once: into the scene.
+struct PythonMesh {
+    Vectors3 vertices;
+    Indices triangles;
+    std::optional<Vectors3> normals;
+    std::optional<Vectors2> uvs;
+    uint32_t material;
+
+    void require_valid() const {
+        const size_t n = vertices.shape(0);
+        for (size_t i = 0; i < 3 * n; ++i) {
+            // Written so that NaN counts as too far.
+            if (!(std::abs(vertices.data()[i]) <= Mesh::FARTHEST)) {
+                throw std::invalid_argument("vertex " + std::to_string(i / 3) +
+                                            " is not finite, or too far away");
+            }
         }
-    }
-    for (size_t i = 0; i < m; ++i) {
-        for (int corner = 0; corner < 3; ++corner) {
-            const uint32_t vertex = triangles.data()[3 * i + corner];
-            if (vertex >= n)
-                throw std::invalid_argument("triangle " + std::to_string(i) +
+        for (size_t i = 0; i < 3 * triangles.shape(0); ++i) {
+            if (triangles.data()[i] >= n) {
+                throw std::invalid_argument("triangle " + std::to_string(i / 3) +
                                             " names a vertex that is not there");
-            mesh.triangles[i][corner] = vertex;
+            }
         }
     }
-    if (normals) {
-        require_same_length(normals->shape(0), n, "vertices and normals");
-        mesh.normals.resize(n);
-        for (size_t i = 0; i < n; ++i) mesh.normals[i] = vec3_at(*normals, i);
+
+    Mesh copy() const {
+        // Again, as others may have written to the arrays since.
+        require_valid();
+        Mesh mesh;
+        mesh.vertices.reserve(vertices.shape(0) + 1);
+        assign(mesh.vertices, vertices);
+        mesh.vertices.emplace_back(0);
+        assign(mesh.triangles, triangles);
+        if (normals) assign(mesh.normals, *normals);
+        if (uvs) assign(mesh.uvs, *uvs);
+        mesh.material = material;
+        return mesh;
     }
-    if (uvs) {
-        require_same_length(uvs->shape(0), n, "vertices and uvs");
-        mesh.uvs.resize(n);
-        for (size_t i = 0; i < n; ++i) mesh.uvs[i] = vec2_at(*uvs, i);
+
+  private:
+    template <class Row, class Array>
+    static void assign(std::vector<Row>& rows, const Array& array) {
+        const auto* const begin = reinterpret_cast<const Row*>(array.data());
+        rows.assign(begin, begin + array.shape(0));
     }
-    mesh.material = material;
+};
+
+using Meshes = std::vector<const PythonMesh*>;
+
+std::vector<Mesh> copies_of(const Meshes& meshes) {
+    std::vector<Mesh> copies;
+    copies.reserve(meshes.size());
+    for (const PythonMesh* mesh : meshes) copies.push_back(mesh->copy());
+    return copies;
+}
+
+PythonMesh make_mesh(Vectors3 vertices, Indices triangles, std::optional<Vectors3> normals,
+                     std::optional<Vectors2> uvs, uint32_t material) {
+    if (normals) require_same_length(normals->shape(0), vertices.shape(0), "vertices and normals");
+    if (uvs) require_same_length(uvs->shape(0), vertices.shape(0), "vertices and uvs");
+    PythonMesh mesh{std::move(vertices), std::move(triangles), std::move(normals), std::move(uvs), material};
+    mesh.require_valid();
     return mesh;
 }
 
@@ -135,17 +164,17 @@ std::vector<Material> materials_of(const std::vector<PythonMaterial>& materials,
     return found;
 }
 
-std::shared_ptr<Scene> make_scene(std::vector<Mesh> meshes, const std::vector<PythonMaterial>& materials,
+std::shared_ptr<Scene> make_scene(const Meshes& meshes, const std::vector<PythonMaterial>& materials,
                                   const std::vector<std::shared_ptr<Texture>>& textures,
                                   std::optional<Sky> sky) {
     Scene::Data data;
     data.textures.assign(textures.begin(), textures.end());
     data.materials = materials_of(materials, data.textures);
-    for (const Mesh& mesh : meshes) {
-        if (mesh.material >= materials.size())
+    for (const PythonMesh* mesh : meshes) {
+        if (mesh->material >= materials.size())
             throw std::invalid_argument("a mesh names a material that is not there");
     }
-    data.meshes = std::move(meshes);
+    data.meshes = copies_of(meshes);
     data.sky = std::move(sky);
     const nb::gil_scoped_release release;
     return std::make_shared<Scene>(std::move(data));
@@ -180,7 +209,7 @@ void bind_scene(nb::module_& m) {
         .def_prop_ro("bsdf",
                      [](const PythonMaterial& p) { return std::string(bsdfs()[p.material.bsdf].name); });
 
-    nb::class_<Mesh>(m, "Mesh", "Triangles of one material.")
+    nb::class_<PythonMesh>(m, "Mesh", "Triangles of one material.")
         .def(nb::new_(&make_mesh), nb::arg("vertices"), nb::arg("triangles"), nb::arg("normals") = nb::none(),
              nb::arg("uvs") = nb::none(), nb::arg("material") = 0,
              "vertices: float32 (n, 3). triangles: uint32 (m, 3), counter-clockwise seen from the front. "
@@ -202,6 +231,19 @@ void bind_scene(nb::module_& m) {
              nb::arg("textures") = std::vector<std::shared_ptr<Texture>>{}, nb::arg("sky") = nb::none(),
              "Copies the meshes and builds the acceleration structure on all cores. Raises ValueError for an "
              "index out of range.")
+        .def_static(
+            "build_alone",
+            [](const Meshes& meshes) {
+                const std::vector<Mesh> copies = copies_of(meshes);
+                const nb::gil_scoped_release release;
+                const Scene::BuildTime time = Scene::build_alone(copies);
+                return std::pair{time.seconds, time.processor_seconds};
+            },
+            nb::arg("meshes"),
+            "Builds the acceleration structure over meshes and nothing else, and drops it. Returns the "
+            "seconds "
+            "that it took by\n"
+            "the clock, and of the processor.")
         .def(
             "with_materials", &relit_scene, nb::arg("materials"), nb::arg("sky") = nb::none(),
             "The same geometry, textures and cut-outs, which the two scenes share, under other materials and "

@@ -2,20 +2,39 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "gi/ray.h"
 
 namespace etendue {
 
+/// Leaves what a vector grows by as it is, to be written by many threads at once rather than zeroed by one.
+template <class T>
+struct Unwritten : std::allocator<T> {
+    template <class U>
+    struct rebind {
+        using other = Unwritten<U>;
+    };
+    template <class U>
+    void construct(U* place) {
+        ::new (static_cast<void*>(place)) U;
+    }
+    template <class U, class... Args>
+    void construct(U* place, Args&&... args) {
+        ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
+    }
+};
+
 /// What every hit wants to know of its triangle, in one line of the cache.
 struct alignas(64) Facet {
     std::array<vec3, 3> corners;
-    vec3 normal;          // of the front, unit
-    float reach;          // see SurfacePoint
-    bool smooth = false;  // the normals at its corners are others
+    vec3 normal;  // of the front, unit
+    float reach;  // see SurfacePoint
+    bool smooth;  // the normals at its corners are others
 
-    explicit Facet(const std::array<vec3, 3>& corners);
+    Facet() = default;
+    Facet(const vec3& v0, const vec3& v1, const vec3& v2);
 
     SurfacePoint point(const vec2& b) const {
         return {(1 - b.x - b.y) * corners[0] + b.x * corners[1] + b.y * corners[2], normal, reach};
@@ -37,15 +56,16 @@ struct Mesh {
     uint32_t material = 0;
 
     // Made of these by `pack`, one a triangle.
-    std::vector<Facet> facets;
-    std::vector<FacetShading> shading;  // empty where there are neither normals nor uvs
+    std::vector<Facet, Unwritten<Facet>> facets;
+    std::vector<FacetShading, Unwritten<FacetShading>>
+        shading;  // empty where there are neither normals nor uvs
 
     /// Coordinates beyond this are refused: the square of a triangle's area must fit single precision.
     static constexpr float FARTHEST = 1e9f;
 
     size_t vertex_count() const { return vertices.size() - 1; }
 
-    /// Must be called before anything of the below.
+    /// Must be called before anything of the below. Works on all cores.
     void pack();
 
     float area(uint32_t triangle) const {

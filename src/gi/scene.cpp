@@ -6,7 +6,11 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <oneapi/tbb/parallel_invoke.h>
+
 #include <atomic>
+#include <chrono>
+#include <ctime>
 #include <stdexcept>
 
 namespace etendue {
@@ -49,10 +53,34 @@ struct Scene::Geometry {
     std::atomic<ssize_t> bytes = 0;
     std::vector<std::pair<const Mesh*, Material>> cut_outs;  // what the filters see
 
+    Geometry() : device(rtcNewDevice(nullptr)) {
+        if (!device) throw std::runtime_error("Embree found no way to run on this processor");
+        rtcSetDeviceMemoryMonitorFunction(device, &count_bytes, this);
+        scene = rtcNewScene(device);
+        // Robust: no ray slips between two triangles that share an edge.
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    }
+
     Geometry(std::vector<Mesh> all_meshes, std::vector<std::shared_ptr<const Texture>> all_textures,
              const std::vector<Material>& materials)
-        : meshes(std::move(all_meshes)), textures(std::move(all_textures)), device(rtcNewDevice(nullptr)) {
-        if (!device) throw std::runtime_error("Embree found no way to run on this processor");
+        : Geometry() {
+        meshes = std::move(all_meshes);
+        textures = std::move(all_textures);
+        cut_outs.reserve(meshes.size());
+        for (const Mesh& mesh : meshes) add(mesh, &materials[mesh.material]);
+        // Embree leaves cores idle at times, and looks at none of what is packed.
+        oneapi::tbb::parallel_invoke([this] { pack(); }, [this] { build(); });
+    }
+
+    Geometry(const Geometry&) = delete;
+    Geometry& operator=(const Geometry&) = delete;
+    ~Geometry() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+
+    void pack() {
         for (Mesh& mesh : meshes) {
             mesh.pack();
             for (size_t i = 0; i < mesh.vertex_count(); ++i) {
@@ -60,39 +88,24 @@ struct Scene::Geometry {
                 upper = glm::max(upper, mesh.vertices[i]);
             }
         }
-        rtcSetDeviceMemoryMonitorFunction(device, &count_bytes, this);
-        scene = rtcNewScene(device);
-        // Robust: no ray slips between two triangles that share an edge.
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-        cut_outs.reserve(meshes.size());
-        for (const Mesh& mesh : meshes) add(mesh, materials[mesh.material]);
-        rtcCommitScene(scene);
-        if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
-            release();
-            throw std::runtime_error("Embree could not build its hierarchy over the scene: out of memory?");
-        }
     }
 
-    Geometry(const Geometry&) = delete;
-    Geometry& operator=(const Geometry&) = delete;
-    ~Geometry() { release(); }
-
-    void release() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
+    void build() {
+        rtcCommitScene(scene);
+        if (rtcGetDeviceError(device) != RTC_ERROR_NONE)
+            throw std::runtime_error("Embree could not build its hierarchy over the scene: out of memory?");
     }
 
     /// One geometry a mesh, its id the mesh's index, over the mesh's own arrays.
-    void add(const Mesh& mesh, const Material& material) {
+    void add(const Mesh& mesh, const Material* material) {
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                    mesh.vertices.data(), 0, sizeof(vec3), mesh.vertex_count());
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
                                    mesh.triangles.size());
-        if (material.cutout_texture) {
-            rtcSetGeometryUserData(geometry, &cut_outs.emplace_back(&mesh, material));
+        if (material && material->cutout_texture) {
+            rtcSetGeometryUserData(geometry, &cut_outs.emplace_back(&mesh, *material));
             rtcSetGeometryIntersectFilterFunction(geometry, &cutout_filter);
             rtcSetGeometryOccludedFilterFunction(geometry, &cutout_filter);
         }
@@ -149,6 +162,17 @@ Scene::Scene(std::shared_ptr<const Geometry> geometry, std::vector<Material> mat
         }
     }
     light_sampler_ = LightSampler(lights_);
+}
+
+Scene::BuildTime Scene::build_alone(const std::vector<Mesh>& meshes) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t processor_start = std::clock();
+    Geometry bare;
+    for (const Mesh& mesh : meshes) bare.add(mesh, nullptr);
+    bare.build();
+    const std::clock_t processor = std::clock() - processor_start;
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    return {seconds.count(), static_cast<double>(processor) / CLOCKS_PER_SEC};
 }
 
 const std::vector<Mesh>& Scene::meshes() const { return geometry_->meshes; }

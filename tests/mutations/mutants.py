@@ -207,7 +207,7 @@ MUTANTS = (
     Mutant(
         "rays that start on the surface itself",
         "gi/mesh.cpp",
-        "glm::dot(glm::abs(normal), error)",
+        "glm::dot(absolute(normal), error)",
         "0.f",
         furnace(),
     ),

@@ -38,6 +38,13 @@ void parallel_for(Index first, Index last, const F& f) {
     for (std::thread& thread : threads) thread.join();
 }
 
+template <class F, class G>
+void parallel_invoke(const F& f, const G& g) {
+    std::thread other(f);
+    g();
+    other.join();
+}
+
 struct global_control {
     enum Parameter { max_allowed_parallelism };
     global_control(Parameter, size_t) {}
