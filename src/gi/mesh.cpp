@@ -2,8 +2,6 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include <bit>
-
 namespace etendue {
 
 namespace {
@@ -21,10 +19,8 @@ bool are_same(const vec3& a, const vec3& b) {
 Facet::Facet(const vec3& v0, const vec3& v1, const vec3& v2) : corners{v0, v1, v2}, smooth(false) {
     const vec3 edge1 = v1 - v0, edge2 = v2 - v0;
     const float size = std::max(max_component(absolute(edge1)), max_component(absolute(edge2)));
-    // Scaled first: the square of a small triangle's area would underflow to a normal of NaN.  By a power of two, which
-    // rounds nothing and divides nothing: 254 - e is the exponent that undoes the exponent e.
-    const float scale = std::bit_cast<float>(0x7f000000u - (std::bit_cast<uint32_t>(size) & 0x7f800000u));
-    normal = glm::normalize(glm::cross(edge1 * scale, edge2 * scale));
+    // Scaled first: the square of a small triangle's area would underflow to a normal of NaN.
+    normal = glm::normalize(glm::cross(edge1 / size, edge2 / size));
     // A point at barycentrics is off by the rounding of their sum (pbrt 4th ed., 6.8.4), a ray's origin beside it by
     // that of another, and by the intersection test's, which subtracts corners from the ray's origin and so rounds
     // at the size of the triangle.  The last is what keeps a ray off a wall that lies in a coordinate plane, where
