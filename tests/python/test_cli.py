@@ -481,7 +481,7 @@ def test_algorithms(etendue: Command) -> None:
     assert "NaivePathtracer\n" in run.out
 
 
-def test_doctor(etendue: Command) -> None:
+def test_doctor(etendue: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     run = etendue("doctor")
     assert (run.code, run.err) == (0, "")
     for name in (
@@ -492,10 +492,15 @@ def test_doctor(etendue: Command) -> None:
         "oneTBB",
         "instruction set",
         "threads",
+        "MB in",
         "numpy",
         "OpenImageIO",
     ):
         assert name in run.out, name
+    monkeypatch.setenv("ETENDUE_FILE_CACHE", "much")
+    assert 'a number of megabytes is needed (0: no cache), not "much"' in etendue("doctor").out
+    monkeypatch.setenv("ETENDUE_FILE_CACHE", "0")
+    assert "off (ETENDUE_FILE_CACHE)" in etendue("doctor").out
 
 
 def test_scenes_are_listed_and_exported(

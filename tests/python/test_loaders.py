@@ -586,8 +586,19 @@ class TestImages:
 
     def test_normal_maps_stay_and_height_maps_are_converted(self) -> None:
         normals = np.full((4, 4, 3), (128, 128, 255), np.uint8)
+        normals[2, 3] = 160, 120, 230
         png("n.png", normals)
         assert (load_image("n.png", "normal").pixels == normals).all()
+        # Grey but for what JPEG does to it, and not.
+        for apart, stays in ((8, False), (9, True)):
+            almost = np.full((4, 4, 3), 100, np.uint8)
+            almost[1, 2, 1] += apart
+            for name, pixels in (("8.png", almost), ("16.png", almost.astype(np.uint16) * 257)):
+                png(name, pixels)
+                assert (
+                    np.allclose(load_image(name, "normal").pixels[0, 0], 100 if name[0] == "8" else 100 / 255)
+                    == stays
+                )
         ramp = np.tile(np.array([0, 40, 80, 120, 160, 200, 240, 255], np.uint8), (8, 1))
         png("h.png", ramp[..., None])
         flat = load_image("h.png", "normal").pixels[4, 3] / 127.5 - 1

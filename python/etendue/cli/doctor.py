@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from importlib import metadata
 
 from .. import machine
+from ..errors import EtendueError
 
 # Widest first; what Embree's kernels are compiled for.
 _INSTRUCTION_SETS = (
@@ -52,6 +53,18 @@ def _machine() -> Iterator[tuple[str, str]]:
     best = next((label for flag, label in _INSTRUCTION_SETS if flag in flags), "unknown")
     yield "  instruction set", best
     yield "threads", machine.threads()
+    yield "file cache", _file_cache()
+
+
+def _file_cache() -> str:
+    try:
+        from ..loaders import cache
+
+        most = cache.limit() >> 20
+    except (ImportError, EtendueError) as error:
+        return str(error)
+    kept = f"{cache.size() >> 20} of at most {most} MB in {cache.folder()}" if most else "off"
+    return f"{kept} ({cache.VARIABLE})"
 
 
 def _requirements() -> tuple[list[str], dict[str, list[str]]]:

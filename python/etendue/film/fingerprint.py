@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..loaders.types import Image, MeshFile, Texture
+from ..loaders.types import Image, Mesh, MeshFile, Texture
 
 # For each place in the scene: the name of the file there, and the digest of its content.
 Contents = dict[str, tuple[str, str]]
@@ -27,21 +27,25 @@ def contents(
     """Digests of the scene's mesh files, in order, of its textures as the core has them, and of its sky."""
     found: Contents = {}
     for index, file in enumerate(files):
-        found[f"scene.mesh_files[{index}]"] = file.path.name, _of_meshes(file)
+        found[f"scene.mesh_files[{index}]"] = file.path.name, file.digest or of_meshes(file.meshes)
         found[f"materials of scene.mesh_files[{index}]"] = file.path.name, _of_materials(file)
     for index, image in enumerate(textures):
-        found[f"texture {index}"] = Path(image.path).name, _digest([image.pixels], [str(image.srgb)])
+        found[f"texture {index}"] = Path(image.path).name, image.digest or of_image(image)
     if environment is not None:
         name, pixels = environment
         found["scene.sky.envmap"] = Path(name).name, _digest([pixels])
     return found
 
 
-def _of_meshes(file: MeshFile) -> str:
-    arrays = [
-        array for mesh in file.meshes for array in (mesh.vertices, mesh.triangles, mesh.normals, mesh.uvs)
-    ]
-    return _digest(arrays, [str(mesh.material) for mesh in file.meshes])
+def of_meshes(meshes: Sequence[Mesh]) -> str:
+    """The digest of a mesh file's meshes, without their materials."""
+    arrays = [array for mesh in meshes for array in (mesh.vertices, mesh.triangles, mesh.normals, mesh.uvs)]
+    return _digest(arrays, [str(mesh.material) for mesh in meshes])
+
+
+def of_image(image: Image) -> str:
+    """The digest of a texture."""
+    return _digest([image.pixels], [str(image.srgb)])
 
 
 def _of_materials(file: MeshFile) -> str:

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import EtendueError, nearest_name
-from . import obj_text
+from . import cache, obj_kept, obj_text
 from .geometry import drop_degenerate, face_normals, normalised
 from .mtl import load_mtl
 from .names import find_beside
+from .obj_kept import Parsed
 from .obj_text import ObjText
 from .polygons import triangulate
 from .types import Material, Mesh, MeshFile
@@ -20,10 +21,25 @@ Ints = NDArray[np.int64]
 
 #: the name of what is drawn before, or without, any usemtl
 DEFAULT_MATERIAL = "default"
+# Smaller files are read in a moment.
+_LARGE = 1 << 20
 
 
 def load_obj(path: Path, warnings: list[str]) -> MeshFile:
-    """Read an OBJ file and its MTL files, as `load_mesh` says."""
+    """Read an OBJ file and its MTL files, as `load_mesh` says; from the cache where it is large and has not changed."""
+    stamp = cache.stamp_of(path, _LARGE)
+    parsed = None if stamp is None else obj_kept.find(path, stamp)
+    if parsed is None:
+        parsed = _parsed(path)
+        if stamp is not None:
+            obj_kept.keep(path, stamp, parsed)
+    warnings += [f"{path}{note}" for note in parsed.notes]
+    # What MTL files say is told anew each time: they are short, and name further files.
+    return MeshFile(path, parsed.meshes, _materials(path, parsed, warnings), parsed.digest)
+
+
+def _parsed(path: Path) -> Parsed:
+    warnings: list[str] = []
     text = obj_text.read(path)
     if text.unknown is not None:
         line, word, count = text.unknown
@@ -39,14 +55,15 @@ def load_obj(path: Path, warnings: list[str]) -> MeshFile:
     material_of, names = _material_of_faces(text)
     normals = _complete_normals(text, table)
     uvs = _complete_uvs(path, text, table, warnings)
-    materials = _materials(path, text, names, warnings)
     meshes = []
     of_triangle = material_of[owner]
-    for index, material in enumerate(materials):
-        part = table if len(materials) == 1 else table[of_triangle == index]
+    for index, name in enumerate(names):
+        part = table if len(names) == 1 else table[of_triangle == index]
         if len(part):
-            meshes.append(_mesh(material.name, index, text, normals, uvs, part))
-    return MeshFile(path, drop_degenerate(path, meshes, warnings), materials)
+            meshes.append(_mesh(name, index, text, normals, uvs, part))
+    meshes = drop_degenerate(path, meshes, warnings)
+    notes = [warning.removeprefix(str(path)) for warning in warnings]
+    return Parsed(meshes, names, _first_uses(text), text.mtllib, notes)
 
 
 def _count_left_out(path: Path, text: ObjText, warnings: list[str]) -> None:
@@ -67,10 +84,10 @@ def _material_of_faces(text: ObjText) -> tuple[Ints, list[str]]:
     return by_statement[statement], list(index_of)
 
 
-def _materials(path: Path, text: ObjText, names: list[str], warnings: list[str]) -> list[Material]:
+def _materials(path: Path, parsed: Parsed, warnings: list[str]) -> list[Material]:
     known: dict[str, Material] = {}
     missing = False
-    for line, argument in text.mtllib:
+    for line, argument in parsed.mtllib:
         # One name with spaces in it, or several names.
         whole = find_beside(path.parent, argument)
         for name in [argument] if whole else argument.split():
@@ -80,12 +97,12 @@ def _materials(path: Path, text: ObjText, names: list[str], warnings: list[str])
             else:
                 missing = True
                 warnings.append(f"{path}:{line}: there is no material file {name}; grey is used instead")
-    for line, name in _first_uses(text):
-        if name in names and name not in known and not missing:
+    for line, name in parsed.usemtl:
+        if name in parsed.names and name not in known and not missing:
             near = nearest_name(name, known)
             hint = f' (did you mean "{near}"?)' if near else ""
             warnings.append(f'{path}:{line}: unknown material "{name}"{hint}; grey is used instead')
-    return [known.get(name) or Material(name) for name in names]
+    return [known.get(name) or Material(name) for name in parsed.names]
 
 
 def _first_uses(text: ObjText) -> list[tuple[int, str]]:

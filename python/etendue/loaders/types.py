@@ -16,12 +16,14 @@ class Image:
     """Pixels of an image file, row 0 at the top.
 
     `pixels` is uint8 (h, w, c) where `srgb` is true, or where the file holds data (a normal map, an opacity
-    map), and float32 (h, w, c), linear, otherwise. c is 1, 3 or 4; a fourth channel is opacity.
+    map), and float32 (h, w, c), linear, otherwise. c is 1, 3 or 4; a fourth channel is opacity. `digest` is that of
+    both where it is known already, else empty.
     """
 
     pixels: NDArray[np.uint8] | NDArray[np.float32]
     srgb: bool
     path: str
+    digest: str = ""
 
 
 #: where a texture is: a file, or pixels that were inside a mesh file
@@ -69,8 +71,9 @@ class Mesh:
 
 @dataclass
 class MeshFile:
-    """Everything one mesh file brings."""
+    """Everything one mesh file brings; `digest` is that of its meshes where it is known already, else empty."""
 
     path: Path
     meshes: list[Mesh] = field(default_factory=list)
     materials: list[Material] = field(default_factory=list)
+    digest: str = ""
