@@ -80,6 +80,26 @@ def run_startup(arguments: argparse.Namespace) -> tuple[str, Any]:
     return "\n".join(lines), found
 
 
+def run_load(arguments: argparse.Namespace) -> tuple[str, Any]:
+    """Loading, beside Embree's build alone."""
+    from .loading import measure
+
+    found = [measure(scene, arguments.repeats) for scene in arguments.scenes]
+    ways = ("arrays", "file", "file, cached")
+    lines = [
+        f"| scene | triangles | Embree alone, s | {' | '.join(ways)} | times as long: {' | '.join(ways)} |",
+        "|---" * (3 + 2 * len(ways)) + "|",
+    ]
+    for row in found:
+        cells = [
+            f"{values[way]:.2f}" if way in values else ""
+            for values in (row.seconds, row.times)
+            for way in ways
+        ]
+        lines.append(f"| {row.scene} | {row.triangles:,} | {row.embree:.2f} | {' | '.join(cells)} |")
+    return "\n".join(lines), [row.row() for row in found]
+
+
 def run_ablate(arguments: argparse.Namespace) -> tuple[str, Any]:
     """Two or more builds of the compiled core."""
     from .ablation import ablate
@@ -137,6 +157,10 @@ def parser() -> argparse.ArgumentParser:
     )
     ablate.add_argument("cores", nargs="+", type=Path, help="files _core*.so")
     ablate.set_defaults(run=run_ablate)
+    load = commands.add_parser(
+        "load", parents=[common], help="loading a scene, beside Embree's build over its triangles alone"
+    )
+    load.set_defaults(run=run_load)
     startup = commands.add_parser(
         "startup", parents=[common], help="the time to import, and of a tiny render"
     )

@@ -72,3 +72,16 @@ def test_what_is_missing_is_said() -> None:
     done = subprocess.run(wrong, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 2
     assert "nowhere" in done.stderr
+
+
+def test_loading_is_held_against_embree(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from benchmarks import loading
+
+    monkeypatch.setenv("ETENDUE_FILE_CACHE", "")
+    monkeypatch.setattr(loading, "prepared", lambda _: tmp_path / "world.npz")
+    world().write(tmp_path / "world.npz")
+    found = loading.measure("box", 2)
+    assert found.triangles == 4
+    assert set(found.seconds) == set(found.times) == {"arrays", "file", "file, cached"}
+    assert found.embree > 0
+    assert found.times["file"] > 0
