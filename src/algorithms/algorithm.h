@@ -51,7 +51,7 @@ class Context {
     /// What the path's next edge ends at.
     SurfaceHit intersect(const Ray& ray) {
         ++rays;
-        const SurfaceHit hit = scene.intersect(ray);
+        const SurfaceHit hit = scene.intersect(ray, [this] { sampler.prepare(); });
         if (observer_) observer_->edge(ray, hit);
         return hit;
     }

@@ -27,6 +27,7 @@ class Pathtracer : public Algorithm {
         float prev_pdf = 0;
         bool prev_delta = true;
         for (int depth = 1;; ++depth) {
+            context.sampler.start_vertex(depth);
             const SurfaceHit hit = context.intersect(ray);
             // Light found by chance, against the pdf of having sampled it on purpose from the vertex before.
             if (hit.is_light()) {
@@ -41,7 +42,6 @@ class Pathtracer : public Algorithm {
             if (!hit.valid || depth == MAX_CAM_PATH_LENGTH) break;
 
             // Light sampled on purpose, one edge further.
-            context.sampler.start_vertex(depth);
             radiance += sample_direct_light(context, hit, throughput, depth + 1, light_choice_, mis_);
 
             // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.

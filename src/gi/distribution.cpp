@@ -24,7 +24,7 @@ Distribution1D::Choice Distribution1D::sample(double u) const {
 }
 
 Distribution2D::Distribution2D(std::span<const float> weights, uint32_t width, uint32_t height)
-    : cumulative_(weights.size()), width_(width), height_(height) {
+    : cumulative_(weights.size()), first_cell_(weights.size()), width_(width), height_(height) {
     std::vector<double> row_sums(height);
     for (size_t y = 0; y < height; ++y) {
         double sum = 0;
@@ -32,7 +32,14 @@ Distribution2D::Distribution2D(std::span<const float> weights, uint32_t width, u
             sum += weights[x];
             cumulative_[x] = static_cast<float>(sum);
         }
-        row_sums[y] = cumulative_[(y + 1) * width - 1];
+        const float* const row = &cumulative_[y * width];
+        row_sums[y] = row[width - 1];
+        for (uint32_t step = 0, cell = 0; step < width; ++step) {
+            // A little early, as `sample` rounds.
+            const float target = step / static_cast<float>(width) * row[width - 1] * (1 - 1e-6f);
+            while (cell + 1 < width && row[cell] <= target) ++cell;
+            first_cell_[y * width + step] = cell;
+        }
     }
     rows_ = Distribution1D(row_sums);
 }
@@ -41,7 +48,9 @@ Distribution2D::Choice Distribution2D::sample(const vec2& u) const {
     const Distribution1D::Choice row = rows_.sample(u.y);
     const float* const begin = &cumulative_[size_t{row.index} * width_];
     const float target = u.x * begin[width_ - 1];
-    const float* end = std::upper_bound(begin, begin + width_, target);
+    const auto step = std::min(static_cast<uint32_t>(u.x * static_cast<float>(width_)), width_ - 1);
+    const float* end = begin + first_cell_[size_t{row.index} * width_ + step];
+    while (end < begin + width_ && *end <= target) ++end;
     while (end == begin + width_ || *end == (end == begin ? 0.f : *(end - 1))) --end;
     const float from = end == begin ? 0.f : *(end - 1), width = *end - from;
     const float remapped = std::clamp((target - from) / width, 0.f, ONE_MINUS_EPSILON);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gi/math.h"
+#include "gi/memory.h"
 
 namespace etendue {
 
@@ -56,7 +57,10 @@ class Distribution2D {
 
   private:
     // Single precision within a row: at 16 million cells the table is what counts.
-    std::vector<float> cumulative_;
+    std::vector<float, BulkAllocator<float>> cumulative_;
+    // By row, for u in each of `width` equal steps: the cell at which the search begins, which then is near its end
+    // (Chen and Asau 1974, "On Generating Random Variates from an Empirical Distribution").
+    std::vector<uint32_t, BulkAllocator<uint32_t>> first_cell_;
     Distribution1D rows_;
     uint32_t width_ = 0, height_ = 0;
 };

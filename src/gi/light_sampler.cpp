@@ -33,7 +33,7 @@ LightSampler::LightSampler(std::span<const Light> lights) : lights_(lights), fir
 std::optional<LightSampler::Choice> LightSampler::sample(Kind kind, const vec3& reference, double u) const {
     if (by_power_.total() <= 0) return std::nullopt;
     if (kind == Kind::tree && u < triangles_share_) {
-        const auto choice = tree_.sample(reference, u / triangles_share_);
+        const auto choice = tree_.sample(reference, std::min(u / triangles_share_, 1 - 0x1p-52));
         if (!choice) return std::nullopt;
         const auto [light, triangle] = emitters_[choice->emitter];
         return Choice{light, triangle, static_cast<float>(triangles_share_) * choice->pmf,

@@ -28,6 +28,7 @@ Facet::Facet(const vec3& v0, const vec3& v1, const vec3& v2) : corners{v0, v1, v
     const vec3 farthest = glm::max(absolute(v0), glm::max(absolute(v1), absolute(v2)));
     const vec3 error = error_bound(9) * farthest + error_bound(4) * size;
     reach = glm::dot(absolute(normal), error);
+    area = glm::length(glm::cross(edge1, edge2)) / 2;
 }
 
 void Mesh::pack() {

@@ -2,35 +2,19 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <vector>
 
+#include "gi/memory.h"
 #include "gi/ray.h"
 
 namespace etendue {
-
-/// Leaves what a vector grows by as it is, to be written by many threads at once rather than zeroed by one.
-template <class T>
-struct Unwritten : std::allocator<T> {
-    template <class U>
-    struct rebind {
-        using other = Unwritten<U>;
-    };
-    template <class U>
-    void construct(U* place) {
-        ::new (static_cast<void*>(place)) U;
-    }
-    template <class U, class... Args>
-    void construct(U* place, Args&&... args) {
-        ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
-    }
-};
 
 /// What every hit wants to know of its triangle, in one line of the cache.
 struct alignas(64) Facet {
     std::array<vec3, 3> corners;
     vec3 normal;  // of the front, unit
     float reach;  // see SurfacePoint
+    float area;
     bool smooth;  // the normals at its corners are others
 
     Facet() = default;
@@ -56,8 +40,8 @@ struct Mesh {
     uint32_t material = 0;
 
     // Made of these by `pack`, one a triangle.
-    std::vector<Facet, Unwritten<Facet>> facets;
-    std::vector<FacetShading, Unwritten<FacetShading>>
+    std::vector<Facet, BulkAllocator<Facet>> facets;
+    std::vector<FacetShading, BulkAllocator<FacetShading>>
         shading;  // empty where there are neither normals nor uvs
 
     /// Coordinates beyond this are refused: the square of a triangle's area must fit single precision.
@@ -68,9 +52,10 @@ struct Mesh {
     /// Must be called before anything of the below. Works on all cores.
     void pack();
 
-    float area(uint32_t triangle) const {
-        const auto& [a, b, c] = facets[triangle].corners;
-        return glm::length(glm::cross(b - a, c - a)) / 2;
+    /// Asks for what a hit of the triangle will want to know.
+    void prefetch(uint32_t triangle) const {
+        __builtin_prefetch(&facets[triangle]);
+        if (!shading.empty()) __builtin_prefetch(&shading[triangle]);
     }
 
     /// The texture coordinates at barycentrics (b1, b2); the barycentrics themselves where the mesh has none.

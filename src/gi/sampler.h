@@ -51,6 +51,11 @@ class Sampler {
         if (kind_ == Kind::independent) state_ = mix_bits(key_ + dimension_);
     }
 
+    /// Makes the vertex's first numbers, which takes a while, before they are asked for.
+    void prepare() {
+        if (kind_ == Kind::sobol && used_ == DRAWS_AT_ONCE) draw();
+    }
+
     float next_1d() { return kind_ == Kind::independent ? to_float(pcg()) : x_[next()]; }
 
     vec2 next_2d() {

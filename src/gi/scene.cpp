@@ -180,12 +180,10 @@ const std::vector<std::shared_ptr<const Texture>>& Scene::textures() const { ret
 const vec3& Scene::lower() const { return geometry_->lower; }
 const vec3& Scene::upper() const { return geometry_->upper; }
 
-SurfaceHit Scene::intersect(const Ray& ray) const {
+Scene::Found Scene::first(const Ray& ray) const {
+    static_assert(NONE == RTC_INVALID_GEOMETRY_ID);
     const RTCRayHit found = geometry_->first_hit(ray);
-    if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {ray, sky_};
-    const Part& part = parts_[found.hit.geomID];
-    const vec2 barycentrics(found.hit.u, found.hit.v);
-    return {ray, found.ray.tfar, *part.mesh, found.hit.primID, barycentrics, *part.material, part.light};
+    return {found.hit.geomID, found.hit.primID, found.ray.tfar, {found.hit.u, found.hit.v}};
 }
 
 bool Scene::occluded(const Ray& ray) const {
@@ -227,7 +225,7 @@ size_t Scene::memory_bytes() const {
                  mesh.facets.size() * sizeof(Facet) + mesh.shading.size() * sizeof(FacetShading);
     }
     for (const auto& texture : textures()) bytes += texture->memory_bytes();
-    if (sky_image_) bytes += sky_image_->pixels.size() * (sizeof(vec3) + sizeof(float));
+    if (sky_image_) bytes += sky_image_->pixels.size() * (sizeof(vec3) + sizeof(float) + sizeof(uint32_t));
     return bytes;
 }
 

@@ -40,8 +40,20 @@ class Scene {
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    /// What the ray finds first.
-    SurfaceHit intersect(const Ray& ray) const;
+    /// What the ray finds first. `meanwhile` is called while what is known of a surface comes from memory.
+    template <class Work>
+    SurfaceHit intersect(const Ray& ray, const Work& meanwhile) const {
+        const Found found = first(ray);
+        if (found.mesh == NONE) return {ray, sky_};
+        const Part& part = parts_[found.mesh];
+        part.mesh->prefetch(found.triangle);
+        meanwhile();
+        return {ray,       found.distance, *part.mesh, found.triangle, found.barycentrics, *part.material,
+                part.light};
+    }
+    SurfaceHit intersect(const Ray& ray) const {
+        return intersect(ray, [] {});
+    }
     /// Whether anything is between two points, or along the ray before t_max.
     bool occluded(const Ray& ray) const;
     /// Traces all of these and does nothing else, as fast as the library does. Returns how many hit something.
@@ -72,6 +84,14 @@ class Scene {
 
   private:
     struct Geometry;
+    /// What of a hit the library tells.
+    struct Found {
+        uint32_t mesh, triangle;
+        float distance;
+        vec2 barycentrics;
+    };
+    static constexpr uint32_t NONE = ~0u;
+    Found first(const Ray& ray) const;
     /// What belongs to a mesh, by its index; `light` is null where it does not emit.
     struct Part {
         const Mesh* mesh;

@@ -74,8 +74,8 @@ MUTANTS = (
     Mutant(
         "area pdf not converted to solid angle",
         "gi/lights/area_light.cpp",
-        "distance2 / (cos_light * mesh_->area(triangle))",
-        "1 / mesh_->area(triangle)",
+        "distance2 / (cos_light * facet.area)",
+        "1 / facet.area",
         (ANALYTIC, "-k", "disc_over"),
     ),
     Mutant(
@@ -88,8 +88,8 @@ MUTANTS = (
     Mutant(
         "triangles of a light taken for equally large",
         "gi/lights/area_light.cpp",
-        "mesh_->area(hit.triangle)",
-        "mesh_->area(0)",
+        "mesh_->facets[hit.triangle].area",
+        "mesh_->facets[0].area",
         (LIGHTS, "-k", "unequal_triangles"),
     ),
     Mutant(

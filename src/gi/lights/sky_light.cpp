@@ -54,7 +54,7 @@ SkyLight::SkyLight(const Sky& sky, float scene_radius) : sky_(&sky) {
              sqr(sky.radius.value_or(scene_radius));
 }
 
-vec3 SkyLight::pixel(int32_t x, int32_t y) const {
+const vec3& SkyLight::pixel(int32_t x, int32_t y) const {
     const auto w = static_cast<int32_t>(sky_->width), h = static_cast<int32_t>(sky_->height);
     return sky_->pixels[size_t(std::clamp(y, 0, h - 1)) * w + (x + w) % w];
 }
@@ -80,6 +80,8 @@ std::optional<LightSample> SkyLight::sample_Li(const vec3&, uint32_t, const vec2
     if (cells_.total() <= 0) return std::nullopt;
     // A cell by its power, then uniformly in solid angle within it.
     const Distribution2D::Choice cell = cells_.sample(u);
+    for (int32_t dy = -1; dy <= 1; ++dy)
+        __builtin_prefetch(&pixel(static_cast<int32_t>(cell.x), static_cast<int32_t>(cell.y) + dy));
     const float cos_theta = glm::mix(row_cosines_[cell.y], row_cosines_[cell.y + 1], cell.remapped.y);
     const float sin_theta = safe_sqrt(1 - cos_theta * cos_theta);
     const float turns = (static_cast<float>(cell.x) + cell.remapped.x) / static_cast<float>(sky_->width);

@@ -11,8 +11,8 @@ namespace etendue {
 
 /// The sky of a scene file, as arrays.
 struct Sky {
-    uint32_t width = 0, height = 0;  // 0: uniform white
-    std::vector<vec3> pixels;        // rows from the top, linear radiance
+    uint32_t width = 0, height = 0;                 // 0: uniform white
+    std::vector<vec3, BulkAllocator<vec3>> pixels;  // rows from the top, linear radiance
     float intensity = 1;
     std::optional<float>
         radius;  // of the sphere whose cross-section counts in `power`; the scene's where empty
@@ -38,7 +38,7 @@ class SkyLight {
     float pdf(const vec3& direction) const;
 
   private:
-    vec3 pixel(int32_t x, int32_t y) const;
+    const vec3& pixel(int32_t x, int32_t y) const;
     vec3 radiance_at(const vec2& uv) const;
     /// Solid-angle density in a cell of row y that is chosen with probability `pmf`.
     float pdf_in_row(uint32_t y, float pmf) const;
