@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from etendue.cli.words import clock, counted, si
+from etendue.words import clock, counted, si
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..config import read_config
+from ..words import clock, counted, si
 from . import memory
-from .words import clock, counted, si
 
 if TYPE_CHECKING:
     from ..scene import Scene

@@ -17,9 +17,9 @@ from ..comparison.work import Report
 from ..config import read_config
 from ..errors import EtendueError, nearest_name
 from ..film import resuming
+from ..words import clock
 from . import memory
 from .interrupts import Interrupts
-from .words import clock
 
 if TYPE_CHECKING:
     from ..config.overrides import Override

@@ -10,7 +10,7 @@ from ..display import tonemap as tonemapped
 from ..errors import EtendueError
 from ..film import Film, merging, sample_ranges, save_pixels
 from ..film import file as film_file
-from .words import counted
+from ..words import counted
 
 
 def merge(parts: Sequence[Path], output: Path) -> str:

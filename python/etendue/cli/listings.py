@@ -7,7 +7,7 @@ from pathlib import Path
 
 from .. import models
 from ..errors import EtendueError, nearest_name
-from .words import si
+from ..words import si
 
 
 def algorithms() -> str:

@@ -7,7 +7,7 @@ import os
 from ..config import Config
 from ..config.sections import Framebuffer
 from ..errors import EtendueError
-from .words import si
+from ..words import si
 
 # The renderer's sums, squares and counts in double precision, a copy of them in the film, and the image
 # in single precision with what encoding it takes.

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from .words import clock, si
+from ..words import clock, si
 
 # Seconds between two lines for scripts.
 _JSON_SECONDS = 0.5

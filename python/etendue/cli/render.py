@@ -18,10 +18,10 @@ from ..config.overrides import Override
 from ..errors import EtendueError
 from ..film import file as film_file
 from ..film import resuming
+from ..words import clock, counted, si
 from . import beside, films, memory, progress
 from .app import USAGE_ERROR
 from .interrupts import Interrupts
-from .words import clock, counted, si
 
 if TYPE_CHECKING:
     from ..film import Film

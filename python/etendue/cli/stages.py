@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from .words import clock
+from ..words import clock
 
 # What is done sooner needs no line in a log.
 _SOON = 2.0

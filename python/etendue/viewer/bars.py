@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from ..cli.words import clock, si
+from ..words import clock, si
 from .pages import PAGES
 from .status import State, Status
 from .viewer import Viewer
