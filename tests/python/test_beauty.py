@@ -167,16 +167,32 @@ def test_interruptions_anywhere_change_nothing(
 
 
 def test_the_worst_come_first(scene: Scene) -> None:
-    errors = scene.render(spp=16).error.tiles
-    films: list[Film] = []
-    scene.render(beauty_render=True, checkpoint=films.append, checkpoint_seconds=0.02, threads=1)
+    size = (2 * SIZE[0], 2 * SIZE[1])
+    # Looks follow each other in parts of what the first samples take of the processor: there are as many on a quick
+    # machine, and more on a busy one.
+    before = time.process_time()
+    rough = scene.render(spp=16, size=size, threads=1)
+    seconds = (time.process_time() - before) / 20
+    errors = rough.error.tiles
     seen = 0
-    for film in films:
-        counts = film.sample_count[8::16, 8::16]
+
+    def look(film: Film) -> None:
+        nonlocal seen
+        counts = film.sample_count[::16, ::16]
         if counts.min() == 16 < counts.max():
             seen += 1
             assert errors[counts == 16].max() <= np.sqrt(2) * errors[counts > 16].min()
-    assert seen > 2
+
+    scene.render(
+        beauty_render=True,
+        error_eps=BOUND / 3,
+        resume=rough,
+        checkpoint=look,
+        checkpoint_seconds=seconds,
+        threads=1,
+        size=size,
+    )
+    assert seen > 10
 
 
 def test_a_film_goes_on_to_another_bound_and_to_equal_counts(
@@ -247,13 +263,23 @@ def test_what_is_asked_for_counts_before_the_scene_file(scene: Scene) -> None:
 def test_progress_and_error_are_told(scene: Scene, whole: Film) -> None:
     parts: list[tuple[float, float]] = []
     errors: list[float] = []
+
+    def stop(fraction: float, spp: float) -> None:
+        parts.append((fraction, spp))
+        if fraction > 0 and errors and errors[0] > errors[-1]:
+            raise KeyboardInterrupt
+
+    # It ends by what it tells alone: no machine is quick enough to come to the bound before.
+    film = scene.render(beauty_render=True, error_eps=1e-5, progress=stop, error=errors.append, threads=1)
+    assert film.interrupted
+    assert all(0 <= fraction < 1 for fraction, _ in parts)
+    parts.clear()
     film = scene.render(
         beauty_render=True, progress=lambda *part: parts.append(part), error=errors.append, threads=1
     )
     assert parts[-1] == (1, film.spp)
     assert all(fraction < 1 for fraction, _ in parts[:-1])
-    assert any(fraction > 0 for fraction, _ in parts[:-1])
-    assert errors[0] > errors[-1] == whole.error.value
+    assert errors[-1] == whole.error.value
     errors.clear()
     film = scene.render(spp=64, error=errors.append)
     assert errors[-1] == film.error.value
@@ -321,7 +347,10 @@ def pixels(name: str) -> Any:
 
 
 def test_time_ends_it(run: Callable[[str], Run]) -> None:
+    before = time.process_time()
     said = run("render lit.json --beauty --set error_eps=1e-5 --time 1 --film a.exr -o b.png --threads 1")
+    # A busy machine may let it end late by the clock.
+    assert time.process_time() - before < 3
     assert said.code == 0
     lines = said.err.splitlines()
     assert lines[-4] == "the time is over"
@@ -331,7 +360,6 @@ def test_time_ends_it(run: Callable[[str], Run]) -> None:
     film = etendue.read_film("a.exr")
     assert (film.complete, film.bound) == (False, 1e-5)
     assert film.sample_count.min() >= 16
-    assert film.seconds < 3
 
 
 @pytest.mark.parametrize(
@@ -371,17 +399,17 @@ def test_all_lines_for_scripts_are_objects(run: Callable[[str], Run]) -> None:
 
 def test_ctrl_c_keeps_what_is_done_and_the_bound(lit_scene: WriteScene) -> None:
     lit_scene(framebuffer={"res_w": 48, "res_h": 32})
-    line = "render lit.json --beauty --set error_eps=1e-4 --film a.exr --sample-map m.png -o b.png"
+    line = "render lit.json --beauty --set error_eps=1e-4 --film a.exr --sample-map m.png -o b.png --json-progress"
     process = subprocess.Popen(
         [sys.executable, "-m", "etendue", *line.split()], stderr=subprocess.PIPE, text=True
     )
     assert process.stderr is not None
-    process.stderr.readline()
-    time.sleep(1)
+    while (json.loads(process.stderr.readline()).get("spp") or 0) < 1:
+        pass
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
-    command = err.splitlines()[-1].removeprefix("to go on: ")
+    command = json.loads(err.splitlines()[-1])["text"].removeprefix("to go on: ")
     assert command.endswith(" render --resume a.exr -o b.png --sample-map m.png")
     film = etendue.read_film("a.exr")
     assert (film.interrupted, film.complete, film.bound) == (True, False, 1e-4)
