@@ -152,9 +152,13 @@ class TestResults:
         assert short["ratio"]["high"] < 1
 
     def test_equal_time_charges_each_its_own(self, lit: Path) -> None:
-        found = etendue.compare(lit, BOTH, time=0.2, repeats=2, reference_spp=64, size=(64, 64)).results
+        found = etendue.compare(
+            lit, BOTH, time=0.2, repeats=2, reference_spp=64, size=(64, 64), threads=1
+        ).results
         for each in found["estimators"]:
-            assert 0.19 < each["table"]["seconds"]["value"] < 0.4
+            assert each["table"]["seconds"]["value"] > 0.19
+            # On a busy machine it is late by the clock, and no more than that.
+            assert each["table"]["CPU seconds"]["value"] < 0.4
             assert each["curves"][0][-1]["spp"] > each["curves"][0][0]["spp"] == 1
         assert found["goal"] == {"spp": None, "seconds": 0.2}
 

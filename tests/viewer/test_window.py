@@ -101,6 +101,13 @@ def test_keys_modes_and_views() -> None:
         assert viewer.document.config.framebuffer.exposure == pytest.approx(2**0.5, rel=1e-4)
         hand.press(Key.space)
         hand.wait(lambda: viewer.session.status.state is State.PAUSED, "pause")
+        clock = [-1.0]
+
+        def stands_still() -> bool:
+            before, clock[0] = clock[0], viewer.session.status.seconds
+            return clock[0] == before
+
+        hand.wait(stands_still, "end of the last samples")
         samples = viewer.session.status.spp
         hand.context.yield_(10)
         assert viewer.session.status.spp == samples
