@@ -18,13 +18,17 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const Camera& camera
                                         const std::string& algorithm,
                                         const std::map<std::string, ParameterValue>& parameters,
                                         const std::string& sampler, const std::string& filter, uint64_t seed,
-                                        int threads, uint64_t first_sample) {
+                                        int threads, uint64_t first_sample,
+                                        const std::shared_ptr<Films>& films) {
+    // A film takes its time.
+    const nb::gil_scoped_release release;
     Renderer::Settings settings;
     settings.sampler = static_cast<Sampler::Kind>(index_of(Sampler::names, sampler, "sampler"));
     settings.filter = static_cast<Filter::Kind>(index_of(Filter::names, filter, "filter"));
     settings.seed = seed;
     settings.first_sample = first_sample;
     settings.threads = threads;
+    settings.films = films;
     return std::make_unique<Renderer>(scene, camera, make_algorithm(algorithm, parameters), settings);
 }
 
@@ -140,15 +144,21 @@ std::optional<Out<double, Split>> contributions(const Renderer& renderer) {
 }  // namespace
 
 void bind_renderer(nb::module_& m) {
+    nb::class_<Films>(m, "Films",
+                      "Memory for renderers that follow each other: what one had, the next clears and takes.")
+        .def(nb::init<>());
     nb::class_<Renderer>(m, "Renderer",
                          "Renders a scene into its film, as far as it is asked to, again and again.")
-        .def(nb::new_(&make_renderer), nb::keep_alive<0, 2>(), nb::arg("scene"), nb::arg("camera"),
-             nb::arg("algorithm"), nb::arg("parameters") = std::map<std::string, ParameterValue>{},
-             nb::arg("sampler") = "sobol", nb::arg("filter") = "blackman_harris", nb::arg("seed") = 0,
-             nb::arg("threads") = 0, nb::arg("first_sample") = 0,
-             "parameters: values of the algorithm's parameters by name. threads: 0 for all cores. "
-             "first_sample: the\n"
-             "index of each pixel's first sample. Raises ValueError for names and values that do not fit.")
+        .def(
+            nb::new_(&make_renderer), nb::keep_alive<0, 2>(), nb::arg("scene"), nb::arg("camera"),
+            nb::arg("algorithm"), nb::arg("parameters") = std::map<std::string, ParameterValue>{},
+            nb::arg("sampler") = "sobol", nb::arg("filter") = "blackman_harris", nb::arg("seed") = 0,
+            nb::arg("threads") = 0, nb::arg("first_sample") = 0, nb::arg("films").none() = nb::none(),
+            "parameters: values of the algorithm's parameters by name. threads: 0 for all cores. "
+            "first_sample: the\n"
+            "index of each pixel's first sample. films: whose memory its film takes, and gives back with the "
+            "last reference to the\n"
+            "renderer. Raises ValueError for names and values that do not fit.")
         .def("render", &render, nb::arg("samples"), nb::arg("progress") = nb::none(),
              nb::arg("time_limit") = nb::none(),
              "Brings every pixel to `samples` samples, going on from those it has, with the interpreter free "

@@ -503,6 +503,7 @@ void bind_camera(nb::module_& m) {
             "origins and unit\n"
             "directions, (n, 3) each.");
     m.def("auto_focus", &auto_focus, nb::arg("scene"), nb::arg("camera"),
+          nb::call_guard<nb::gil_scoped_release>(),
           "Geometric mean of the hit distances of pixel-centre rays over the middle quarter (w/4 x h/4) of "
           "the image; the camera's\n"
           "own focal depth where none hits.");

@@ -29,9 +29,15 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Alg
       algorithm_(std::move(algorithm)),
       first_sample_(settings.first_sample),
       threads_(thread_count(settings.threads)),
-      film_(camera.width(), camera.height()),
+      films_(settings.films),
+      film_(films_ ? films_->take(camera.width(), camera.height(), threads_)
+                   : Film(camera.width(), camera.height())),
       tiles_(camera.width(), camera.height()),
       tile_mutexes_(tiles_.count()) {}
+
+Renderer::~Renderer() {
+    if (films_) films_->give_back(std::move(film_));
+}
 
 void Renderer::resume(Film film) {
     if (film.width() != film_.width() || film.height() != film_.height()) {
@@ -76,7 +82,8 @@ bool Renderer::render(uint64_t samples, double time_limit) {
             looked = Clock::now();
         }
     }
-    look(workers);
+    // Who cancels is waiting.
+    if (!stop_ || seconds_since(start) > time_limit) look(workers);
     seconds_ = seconds_before + seconds_since(start);
     stop_ = false;
     return std::ranges::all_of(film_.pixels(), [&](const Pixel& pixel) { return pixel.count >= samples; });

@@ -4,12 +4,14 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <shared_mutex>
 
 #include "algorithms/algorithm.h"
 #include "driver/contributions.h"
 #include "driver/film_error.h"
+#include "driver/films.h"
 #include "driver/sensor.h"
 #include "driver/tiles.h"
 #include "gi/film.h"
@@ -22,8 +24,9 @@ class Renderer {
         Sampler::Kind sampler = Sampler::Kind::sobol;
         Filter::Kind filter = Filter::Kind::blackman_harris;
         uint64_t seed = 0;
-        uint64_t first_sample = 0;  // index of the first sample of each pixel
-        int threads = 0;            // 0: all
+        uint64_t first_sample = 0;          // index of the first sample of each pixel
+        int threads = 0;                    // 0: all
+        std::shared_ptr<Films> films = {};  // where its film comes from and goes to; null: nowhere
     };
     /// A sample whose radiance was not a finite number >= 0; it is not in the film's sums.
     struct InvalidSample {
@@ -34,6 +37,7 @@ class Renderer {
     /// The scene must outlive the renderer.
     Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Algorithm> algorithm,
              const Settings& settings);
+    ~Renderer();
 
     /// Brings every pixel to `samples` samples, going on from those it has. False where it returned before
     /// that: cancelled, or `time_limit` seconds had passed, with every pixel at the number of samples that
@@ -114,6 +118,7 @@ class Renderer {
     std::unique_ptr<Algorithm> algorithm_;
     uint64_t first_sample_;
     int threads_;
+    std::shared_ptr<Films> films_;
     Film film_;
     Tiles tiles_;
     // Held by who renders a tile, or reads it; shared by those who render single pixels of it.

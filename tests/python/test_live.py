@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import etendue
+from etendue import _core
 from etendue.config.overrides import Override
 from etendue.film import save_pixels
 from etendue.scene import Scene
@@ -53,6 +54,20 @@ def test_pictures_of_coarse_passes(lit_scene: Callable[..., None]) -> None:
             renderer.picture(stride)
         with pytest.raises(ValueError, match="stride"):
             renderer.render_coarse(stride)
+
+
+def test_a_film_that_was_used_is_as_a_new_one(lit_scene: Callable[..., None]) -> None:
+    films = _core.Films()
+    for size in ((37, 21), (37, 21), (20, 40), (37, 21)):
+        scene = loaded(size)
+        first, second = scene.renderer(films=films), scene.renderer(films=films)
+        whole = scene.renderer()
+        whole.render(3)
+        for renderer in (first, second):
+            assert not any(array.any() for array in renderer.snapshot())
+            renderer.render(3)
+            for ours, theirs in zip(renderer.snapshot(), whole.snapshot(), strict=True):
+                assert np.array_equal(ours, theirs)
 
 
 def test_cancelled_coarse_passes_say_so(lit_scene: Callable[..., None]) -> None:

@@ -170,9 +170,14 @@ class Scene:
         path = _core.replay(self._renderer(config, 1, 0), x, y, sample)
         return Replay((x, y), sample, config.algorithm, path)
 
-    def renderer(self, threads: int = 0, first_sample: int = 0) -> _core.Renderer:
-        """A renderer of what the scene file says, without samples yet; for who renders in steps of his own."""
-        return self._renderer(self.config, threads, first_sample)
+    def renderer(
+        self, threads: int = 0, first_sample: int = 0, films: _core.Films | None = None
+    ) -> _core.Renderer:
+        """A renderer of what the scene file says, without samples yet; for who renders in steps of his own.
+
+        films: memory that renderers which follow each other share.
+        """
+        return self._renderer(self.config, threads, first_sample, films)
 
     def empty_film(self) -> Film:
         """The film that `renderer` begins with: no samples, and where they are going to come from."""
@@ -284,7 +289,9 @@ class Scene:
         first = resume.goal[0]
         return resume.towards(resume.goal if spp is None else (first, first + int(spp)))
 
-    def _renderer(self, config: Config, threads: int, first_sample: int) -> _core.Renderer:
+    def _renderer(
+        self, config: Config, threads: int, first_sample: int, films: _core.Films | None = None
+    ) -> _core.Renderer:
         from .. import _core
 
         try:
@@ -298,6 +305,7 @@ class Scene:
                 config.seed,
                 threads,
                 first_sample % 2**64,
+                films,
             )
         except ValueError as error:
             raise EtendueError(str(error)) from error

@@ -1,0 +1,27 @@
+// Films that nobody needs any more, kept for their memory: to get so much anew from the system takes longer than
+// the first picture of a change.
+#pragma once
+
+#include <mutex>
+#include <vector>
+
+#include "gi/film.h"
+
+namespace etendue {
+
+/// May be used by several threads.
+class Films {
+  public:
+    /// A film without samples. threads: that clear one which was used.
+    Film take(uint32_t width, uint32_t height, int threads);
+    void give_back(Film film);
+
+  private:
+    // One for what is shown, one for what follows.
+    static constexpr size_t MOST = 2;
+
+    std::mutex mutex_;
+    std::vector<Film> films_;  // all of one size
+};
+
+}  // namespace etendue
