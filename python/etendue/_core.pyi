@@ -376,15 +376,23 @@ def filter_offsets(filter: str, u: Annotated[NDArray[numpy.float32], dict(shape=
     u: float32 (n, 2) in [0, 1) -> offsets from the pixel's centre drawn from the filter, (n, 2).
     """
 
+class Films:
+    """
+    Memory for renderers that follow each other: what one had, the next clears and takes.
+    """
+
+    def __init__(self) -> None: ...
+
 class Renderer:
     """
     Renders a scene into its film, as far as it is asked to, again and again.
     """
 
-    def __init__(self, scene: Scene, camera: Camera, algorithm: str, parameters: Mapping[str, bool | int | float | str] = {}, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0, first_sample: int = 0) -> None:
+    def __init__(self, scene: Scene, camera: Camera, algorithm: str, parameters: Mapping[str, bool | int | float | str] = {}, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0, first_sample: int = 0, films: Films | None = None) -> None:
         """
         parameters: values of the algorithm's parameters by name. threads: 0 for all cores. first_sample: the
-        index of each pixel's first sample. Raises ValueError for names and values that do not fit.
+        index of each pixel's first sample. films: whose memory its film takes, and gives back with the last reference to the
+        renderer. Raises ValueError for names and values that do not fit.
         """
 
     def render(self, samples: int, progress: object | None = None, time_limit: float | None = None) -> bool:

@@ -73,9 +73,9 @@ class Canvas:
         self._moving_line = False
 
     @property
-    def shows_something(self) -> bool:
-        """Whether there is a picture."""
-        return self._textures[0].picture is not None
+    def picture(self) -> Picture | None:
+        """What is shown, left of the line where there are two."""
+        return self._textures[0].picture
 
     def draw(self, viewer: Viewer) -> None:
         """Draws the picture into the rest of the window, and follows the mouse."""

@@ -23,12 +23,17 @@ class Live:
 
     scene: Scene
     renderer: _core.Renderer
-    film: Film
     stride: int = 0
     seconds: float = 0.0
     since: float | None = None
     errors: list[tuple[float, float]] = field(default_factory=list)
     surfaces: dict[str, NDArray[Any]] = field(default_factory=dict)
+
+    @property
+    def bound(self) -> float | None:
+        """The error to be reached; None: it is a number of samples."""
+        config = self.scene.config
+        return config.error_eps if config.beauty_render else None
 
     @property
     def clock(self) -> float:
@@ -38,11 +43,13 @@ class Live:
 
     def taken(self) -> Film:
         """The film as it is now."""
-        if self.film.bound is None:
-            film = grown(self.film, self.film.goal, self.renderer)
+        # Made when it is asked for: a change that is flown over needs none.
+        film, bound = self.scene.empty_film(), self.bound
+        if bound is None:
+            film = grown(film, film.goal, self.renderer)
         else:
-            film = grown_beauty(self.film, 0, self.renderer)
-            film.complete = self.renderer.error <= self.film.bound
+            film = grown_beauty(film, 0, self.renderer)
+            film.complete = self.renderer.error <= bound
         film.seconds = self.clock
         return film
 
@@ -51,19 +58,20 @@ class Live:
         framebuffer, seconds, error = self.scene.config.framebuffer, self.clock, self.error
         pixels, samples = framebuffer.res_w * framebuffer.res_h, self.renderer.samples_done
         fraction = samples / (pixels * framebuffer.sppx)
-        if self.film.bound is not None:
+        bound = self.bound
+        if bound is not None:
             # The error falls with the root of the number of samples.
-            fraction = 0.0 if error is None else min((self.film.bound / error) ** 2, 1.0)
+            fraction = 0.0 if error is None else min((bound / error) ** 2, 1.0)
         running = state is State.RENDERING and fraction > 0
         return Status(
             state,
             samples / pixels,
-            None if self.film.bound is not None else framebuffer.sppx,
+            None if bound is not None else framebuffer.sppx,
             fraction,
             samples / seconds if seconds > 0 else 0.0,
             self.renderer.rays / seconds if seconds > 0 else 0.0,
             error,
-            self.film.bound,
+            bound,
             seconds,
             seconds * (1 / fraction - 1) if running else None,
             problem,

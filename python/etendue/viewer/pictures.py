@@ -16,6 +16,7 @@ from ..scene import Scene
 
 MOST_COARSE = 16
 _SURFACE_SAMPLES = 4
+_ROWS = 32
 
 
 Made = tuple[NDArray[np.uint8], int, "tuple[float, float] | None"]
@@ -76,8 +77,18 @@ def _quantity(name: str) -> Make:
 def _image(source: Source, look: Look) -> Made:
     if look.denoised and source.stride == 1:
         image = source.scene.denoise(source.film(), progress=source.go_on).image
-        return tonemap(image, look.exposure, look.view), 1, None
-    return tonemap(source.renderer.picture(source.stride), look.exposure, look.view), source.stride, None
+        return _toned(source, look, image), 1, None
+    return _toned(source, look, source.renderer.picture(source.stride)), source.stride, None
+
+
+def _toned(source: Source, look: Look, image: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """In parts that fit into caches, and after each of which it may end."""
+    pixels = np.empty(image.shape, np.uint8)
+    for first in range(0, len(image), _ROWS):
+        source.go_on(first / len(image))
+        part = slice(first, first + _ROWS)
+        pixels[part] = tonemap(image[part], look.exposure, look.view)
+    return pixels
 
 
 def _albedo(source: Source, look: Look) -> Made:

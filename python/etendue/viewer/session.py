@@ -28,7 +28,9 @@ from .status import State, Status
 _INTERVAL, _DUTY = 0.1, 4.0
 # A first pass may take this long.
 _FIRST = 0.04
-_NICE = 3
+# The window comes before the picture, and the picture before its samples: by so much less priority. Threads of the
+# render are started by its own, and inherit this.
+_NICE = {"render": 5, "develop": 2}
 
 
 def _is_same(one: Config, other: Config) -> bool:
@@ -57,6 +59,7 @@ class Session:
     def __init__(self, scenes: Scenes, threads: int = 0) -> None:
         self._scenes = scenes
         self._threads = threads
+        self._films = _core.Films()
         self._changed = threading.Condition()
         self._config: Config | None = None
         self._version = 0
@@ -72,7 +75,9 @@ class Session:
         self._crash: BaseException | None = None
         self._sample_seconds = math.inf
         self._workers = [
-            threading.Thread(target=self._guarded, args=(work,), name=f"etendue-{name}", daemon=True)
+            threading.Thread(
+                target=self._guarded, args=(work, _NICE[name]), name=f"etendue-{name}", daemon=True
+            )
             for name, work in (("render", self._render_forever), ("develop", self._develop_forever))
         ]
         for worker in self._workers:
@@ -183,9 +188,10 @@ class Session:
 
     # The render's thread.
 
-    def _guarded(self, work: Callable[[], None]) -> None:
-        # The window comes before the picture: threads of the render are started by this one, and inherit this.
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
+    def _guarded(self, work: Callable[[], None], nice: int) -> None:
+        thread = threading.get_native_id()
+        # A viewer that was begun with less priority may not take more.
+        os.setpriority(os.PRIO_PROCESS, thread, min(os.getpriority(os.PRIO_PROCESS, thread) + nice, 19))
         try:
             work()
         except BaseException as error:
@@ -210,19 +216,18 @@ class Session:
         with self._changed:
             if version == self._version:
                 self._state, self._problem = state, problem
-            self._undeveloped = True
+            # What is loading has nothing to show yet.
+            self._undeveloped = self._undeveloped or state is not State.LOADING
             self._changed.notify_all()
 
     def _render(self, version: int, config: Config) -> None:
         live = self._live
         if live is not None and self._goes_on(live, version, config):
             live.scene = dataclasses.replace(live.scene, config=config)
-            if not config.beauty_render:
-                live.film = dataclasses.replace(live.film, goal=(0, config.framebuffer.sppx))
         else:
             self._finish(version, State.LOADING)
             scene = self._scenes.get(config)
-            live = Live(scene, scene.renderer(self._threads), scene.empty_film())
+            live = Live(scene, scene.renderer(self._threads, films=self._films))
             stride = self._first_stride(config)
             before = time.monotonic()
             live.step(lambda: live.renderer.render_coarse(stride))
@@ -275,6 +280,7 @@ class Session:
 
     def _develop_forever(self) -> None:
         number, wait = 0, _INTERVAL
+        shown: Live | None = None
         while True:
             with self._changed:
                 rendering = self._state is State.RENDERING
@@ -288,10 +294,11 @@ class Session:
             start = time.monotonic()
             # Between two passes, with what the finer one has so far.
             stride = live.stride if is_new else max(live.stride // 2, 1)
-            source = self._source(live, look, stride)
+            source = self._source(live, look, stride, live is shown)
             number += 1
             try:
                 self._picture = develop(source, look, number)
+                shown = live
             except Stale:
                 continue
             except EtendueError as refused:
@@ -300,9 +307,13 @@ class Session:
             live.note_error()
             wait = max(_INTERVAL, _DUTY * cost)
 
-    def _source(self, live: Live, look: Look, stride: int) -> Source:
+    def _source(self, live: Live, look: Look, stride: int, is_shown: bool) -> Source:
+        version = self._version
+
         def go_on(_: float) -> None:
-            if self._closed or self._live is not live or self._look != look:
+            # A change waits for no other picture of what it replaces, but has the first one even so.
+            is_old = self._live is not live or (is_shown and self._version != version)
+            if self._closed or is_old or self._look != look:
                 raise Stale
 
         return Source(live.scene, live.renderer, stride, live.taken, live.surfaces, go_on)

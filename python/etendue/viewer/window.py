@@ -36,7 +36,7 @@ class Window:
 
     def __init__(self, viewer: Viewer, screenshot: Path | None = None, after: float = 0.0) -> None:
         self.viewer = viewer
-        self._canvas = Canvas()
+        self.canvas = Canvas()
         self._screenshot, self._after = screenshot, after
         self._shown_since: float | None = None
         self.params = self._params()
@@ -79,7 +79,7 @@ class Window:
         options = hello_imgui.OpenGlOptions()
         options.anti_aliasing_samples = 1
         params.renderer_backend_options.open_gl_options = options
-        params.fps_idling.fps_idle = _FRAMES_BUSY
+        params.fps_idling.fps_idle = _FRAMES_IDLE
         params.fps_idling.fps_max = _FRAMES_MOST
         return params
 
@@ -99,9 +99,20 @@ class Window:
         viewer.update()
         if not imgui.is_any_item_active() and not keys.is_flying():
             viewer.document.end_gesture()
-        busy = any(session.status.state in (State.RENDERING, State.LOADING) for session in viewer.sessions)
-        self.params.fps_idling.fps_idle = _FRAMES_BUSY if busy else _FRAMES_IDLE
+        self._pace()
         self._close_after_screenshot()
+
+    def _pace(self) -> None:
+        """Decides how soon the next frame follows; a test waits for none."""
+        if self.params.use_imgui_test_engine:
+            return
+        busy = any(
+            session.status.state in (State.RENDERING, State.LOADING) for session in self.viewer.sessions
+        )
+        pace = self.params.fps_idling
+        # An idle window sleeps for as long as a frame may take, and draws after that: too late for a steady pace.
+        pace.enable_idling = not busy
+        pace.fps_max = _FRAMES_BUSY if busy else _FRAMES_MOST
 
     def _draw_areas(self) -> None:
         viewer, line = self.viewer, imgui.get_font_size()
@@ -123,7 +134,7 @@ class Window:
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 0)
         imgui.push_style_color(imgui.Col_.window_bg, (0.06, 0.06, 0.065, 1))
         imgui.begin("Image", None, _STILL | imgui.WindowFlags_.no_scroll_with_mouse)
-        self._canvas.draw(viewer)
+        self.canvas.draw(viewer)
         self._draw_message()
         imgui.end()
         imgui.pop_style_color()
@@ -157,7 +168,7 @@ class Window:
         if self._screenshot is None:
             return
         now = time.monotonic()
-        shown = self._canvas.shows_something or self.viewer.session.status.state is State.FAILED
+        shown = self.canvas.picture is not None or self.viewer.session.status.state is State.FAILED
         if self._shown_since is None and shown:
             self._shown_since = now
         if self._shown_since is not None and now - self._shown_since >= self._after:
