@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from etendue.config import Config
 from etendue.viewer import session as sessions
 from etendue.viewer.navigation import flown, turned
 from etendue.viewer.status import State
@@ -29,13 +30,13 @@ _SETTLED = 4.0  # until nothing is left of a change but its render
 
 
 class Probe:
-    """Changes a window's camera as a hand would, and notes which frame shows it."""
+    """Makes changes in a window as a hand would, and notes which frame shows them."""
 
     def __init__(self, scene: str, seconds: float, changes: int) -> None:
         self._viewer = Viewer([ROOT / "configs" / f"a04_{scene}.json"], overrides=SIZE)
         self._window = Window(self._viewer)
         self._seconds, self._changes = seconds, changes
-        self._cameras: dict[int, Any] = {}  # by the picture's number
+        self._configs: dict[int, Config] = {}  # by the picture's number
         self._frames: list[float] = []  # when each was on the screen
         self._found: dict[str, float] = {}
 
@@ -45,7 +46,7 @@ class Probe:
         draw, steps = callbacks.show_gui, self._steps()
 
         def noted(source: Any, look: Any, number: int) -> Any:
-            self._cameras[number] = source.scene.config.camera
+            self._configs[number] = source.scene.config
             return develop(source, look, number)
 
         def frame() -> None:
@@ -64,7 +65,8 @@ class Probe:
     def _steps(self) -> Iterator[None]:
         yield from self._until(lambda: self._viewer.session.status.spp > 1)
         yield from self._untouched()
-        yield from self._single_changes()
+        yield from self._single_changes("turns", self._turn)
+        yield from self._single_changes("materials", self._polish)
         yield from self._flight()
         self._window.params.app_shall_exit = True
 
@@ -89,15 +91,24 @@ class Probe:
         self._found["software for OpenGL, ms a frame"] = (seconds_of("llvmpipe") - drawing) / frames
         self._note_frames("untouched")
 
-    def _single_changes(self) -> Iterator[None]:
+    def _single_changes(self, name: str, change: Callable[[int], None]) -> Iterator[None]:
         waits = []
         for index in range(self._changes):
             yield from self._for(_REST)
-            turn = 0.01 * math.sin(index), 0.01 * math.cos(index)
-            camera, changed = self._change(turned(self._viewer.document.config.camera, *turn), "look")
-            yield from self._until(lambda: self._shown() == camera)  # noqa: B023
+            change(index)
+            wanted, changed = self._viewer.document.config, time.monotonic()
+            yield from self._until(lambda: self._shown() is wanted)  # noqa: B023
             waits.append(self._frames[-1] - changed)
-        self._note_waits("single changes", waits)
+        self._note_waits(name, waits)
+
+    def _turn(self, index: int) -> None:
+        turn = 0.01 * math.sin(index), 0.01 * math.cos(index)
+        self._viewer.document.set(turned(self._viewer.document.config.camera, *turn), "look")
+
+    def _polish(self, index: int) -> None:
+        assert self._viewer.session.scene is not None
+        name = self._viewer.session.scene.surfaces.of_meshes[0].material.name
+        self._viewer.document.set_material(name, {"roughness": (index % 9 + 1) / 10}, name)
 
     def _flight(self) -> Iterator[None]:
         """A change a frame: each is seen when its picture is, or that of a later one."""
@@ -108,25 +119,21 @@ class Probe:
         while pending or time.monotonic() < end:
             if time.monotonic() < end:
                 forward = 0.01 if len(self._frames) // 30 % 2 else -0.01
-                way = flown(self._viewer.document.config.camera, 0, 0, forward)
-                pending.append(self._change(way, "fly"))
+                self._viewer.document.set(flown(self._viewer.document.config.camera, 0, 0, forward), "fly")
+                pending.append((self._viewer.document.config, time.monotonic()))
             yield
-            shown = [camera for camera, _ in pending]
-            if self._shown() in shown:
-                seen = shown.index(self._shown()) + 1
+            shown = [config is self._shown() for config, _ in pending]
+            if any(shown):
+                seen = shown.index(True) + 1
                 waits += [self._frames[-1] - changed for _, changed in pending[:seen]]
                 del pending[:seen]
         self._note_frames("flight")
         self._note_waits("flight", waits)
 
-    def _change(self, what: Any, gesture: str) -> tuple[Any, float]:
-        self._viewer.document.set(what, gesture)
-        return self._viewer.document.config.camera, time.monotonic()
-
-    def _shown(self) -> Any:
-        """The camera of what the last frame has shown."""
+    def _shown(self) -> Config | None:
+        """What the last frame has shown."""
         picture = self._window.canvas.picture
-        return None if picture is None else self._cameras.get(picture.number)
+        return None if picture is None else self._configs.get(picture.number)
 
     def _note_frames(self, name: str) -> None:
         between = [after - before for before, after in zip(self._frames, self._frames[1:], strict=False)]
