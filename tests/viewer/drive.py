@@ -13,7 +13,7 @@ from etendue.viewer.status import State
 from etendue.viewer.viewer import Viewer
 from etendue.viewer.window import Window
 
-PATIENCE = 120.0
+PATIENCE = 600.0  # only who fails waits for so long
 SIZE = (640, 480)  # fewer pixels for software to draw
 
 
@@ -81,7 +81,6 @@ def drive(viewer: Viewer, steps: Callable[[Hand], None]) -> None:
     """Opens a window, takes the steps in it and closes it; what a step raises is raised."""
     window = Window(viewer)
     window.params.app_window_params.window_geometry.size = SIZE
-    window.params.fps_idling.enable_idling = False
     failures: list[BaseException] = []
 
     def run(context: Any) -> None:

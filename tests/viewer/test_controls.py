@@ -143,7 +143,8 @@ def move_materials(hand: Hand) -> None:
     lamps = [m.name for m in resolved.values() if m.emissive_strength > 0]
     if lamps:
         lamp = f"{sky}light {lamps[0]}/{lamps[0]}".replace("\\", "")
-        for text, strength in (("Extinguish", 0.0), ("Light", None)):
+        patches = [p.emissive_strength for p in document.config.scene.materials if p.name == lamps[0]]
+        for text, strength in (("Extinguish", 0.0), ("Light", patches[-1] if patches else None)):
             hand.click(f"{lamp}/###switch")
             assert patch(document, lamps[0]).emissive_strength == strength, text
         hand.type(f"{lamp}/##strength", 7.5)

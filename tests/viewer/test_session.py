@@ -261,3 +261,16 @@ def test_the_camera_goes_to_the_clipboard_and_back() -> None:
 def test_nothing_but_the_window_needs_the_extra() -> None:
     code = "import sys, etendue.cli.commands, etendue.viewer.viewer; sys.exit('imgui_bundle' in sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_light_is_lit_again_as_it_was() -> None:
+    viewer = Viewer(["lit.json"])
+    try:
+        for strength in (None, 5.0):
+            viewer.document.set_material("light", {"emissive_strength": strength})
+            viewer.switch_light("light", False)
+            assert viewer.document.config.scene.materials[-1].emissive_strength == 0
+            viewer.switch_light("light", True)
+            assert viewer.document.config.scene.materials[-1].emissive_strength == strength
+    finally:
+        viewer.close()

@@ -14,7 +14,10 @@ _TICKS = [digit * 10.0**power for power in range(-5, 6) for digit in (1, 1.5, 2,
 def draw(viewer: Viewer) -> None:
     """Draw the plot's window."""
     imgui.set_next_window_size((460, 280), imgui.Cond_.first_use_ever)
-    if imgui.begin("Error over time")[0]:
+    expanded = imgui.begin("Error over time")[0]
+    if expanded and not any(session.errors for session in viewer.sessions):
+        imgui.text_wrapped("There is an estimate once each pixel has a few samples.")
+    elif expanded:
         flags = implot.AxisFlags_.auto_fit
         if implot.begin_plot("##errors", (-1, -1)):
             implot.setup_axes("seconds of rendering", "relative error", flags, flags)

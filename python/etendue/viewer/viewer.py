@@ -74,6 +74,7 @@ class Viewer:
         self.inspecting = False
         self.pixel: tuple[int, int] | None = None
         self.material: str | None = None
+        self._strengths: dict[str, float | None] = {}
         self.question: Question | None = None
         self._message = ("", False, 0.0)
         self._tasks: list[threading.Thread] = []
@@ -138,6 +139,14 @@ class Viewer:
     def clear(self) -> None:
         """Leaves nothing of the scene but a white sky."""
         self.document.set({("scene",): {"mesh_files": [], "materials": [], "sky": {"intensity": 1.0}}})
+
+    def switch_light(self, name: str, lit: bool) -> None:
+        """Extinguishes a material, or lights it as it was."""
+        strength = self._strengths.pop(name, None) if lit else 0.0
+        if not lit:
+            patches = [patch for patch in self.document.config.scene.materials if patch.name == name]
+            self._strengths[name] = patches[-1].emissive_strength if patches else None
+        self.document.set_material(name, {"emissive_strength": strength})
 
     def paste_camera(self, text: str) -> None:
         """Takes the camera from JSON, as `copied_camera` gives it; raises EtendueError."""

@@ -107,7 +107,10 @@ def _label(label: str, description: str | None, reset: bool = False) -> None:
     imgui.text_unformatted(label)
     if description:
         tooltip(description)
-    imgui.same_line(_LABELS * line)
+    if imgui.calc_text_size(label).x < (_LABELS - 0.5) * line:
+        imgui.same_line(_LABELS * line)
+    else:
+        imgui.set_cursor_pos_x(_LABELS * line)
     imgui.set_next_item_width(-_RESET * line if reset else -1)
 
 

@@ -92,8 +92,10 @@ class Window:
         bars.draw_menu(viewer)
         self._draw_areas()
         if viewer.inspecting:
+            self._place_over_image(at_bottom=False)
             inspector.draw(viewer)
         if viewer.split is not None:
+            self._place_over_image(at_bottom=True)
             plot.draw(viewer)
         dialog.draw(viewer)
         viewer.update()
@@ -146,6 +148,13 @@ class Window:
         bars.draw_status(viewer)
         imgui.end()
         imgui.pop_style_var(2)
+
+    def _place_over_image(self, at_bottom: bool) -> None:
+        """Where a window of its own opens: beside the panel, whose controls stay in sight."""
+        area, line = imgui.get_main_viewport(), imgui.get_font_size()
+        y = area.work_pos.y + (area.work_size.y - 4 * line if at_bottom else line)
+        at = area.work_pos.x + (_PANEL + 1) * line, y
+        imgui.set_next_window_pos(at, imgui.Cond_.first_use_ever, (0, int(at_bottom)))
 
     def _draw_message(self) -> None:
         problem = self.viewer.session.status.problem

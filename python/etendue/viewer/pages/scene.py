@@ -37,11 +37,12 @@ def draw(viewer: Viewer) -> None:
     if scene is None:
         return
     resolved = scene.surfaces.resolved(viewer.document.config.scene)
-    lights = [m for m in resolved.values() if m.emissive_strength > 0 or m.type == "light"]
+    dark = [patch.name for patch in viewer.document.config.scene.materials if patch.emissive_strength == 0]
+    lights = [m for m in resolved.values() if m.emissive_strength > 0 or m.type == "light" or m.name in dark]
     if imgui.collapsing_header(f"Lights ({len(lights)})###lights", imgui.TreeNodeFlags_.default_open):
         _draw_sky(viewer.document)
         for material in lights:
-            _draw_light(viewer.document, material)
+            _draw_light(viewer, material)
     if imgui.collapsing_header(f"Materials ({len(resolved)})###materials"):
         for material in resolved.values():
             _draw_material(viewer, scene, material)
@@ -71,14 +72,15 @@ def _draw_sky(document: Document) -> None:
     imgui.pop_id()
 
 
-def _draw_light(document: Document, material: Resolved) -> None:
+def _draw_light(viewer: Viewer, material: Resolved) -> None:
+    document = viewer.document
     imgui.push_id(f"light {material.name}")
     if imgui.tree_node_ex(material.name, imgui.TreeNodeFlags_.default_open):
         _field(document, material, "albedo_col", "colour", material.albedo)
         _field(document, material, _STRENGTH, "strength", material.emissive_strength)
         lit = material.emissive_strength > 0
         if imgui.button("Extinguish###switch" if lit else "Light###switch"):
-            document.set_material(material.name, {_STRENGTH: 0.0 if lit else None})
+            viewer.switch_light(material.name, not lit)
         imgui.tree_pop()
     imgui.pop_id()
 
