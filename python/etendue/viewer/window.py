@@ -22,7 +22,8 @@ from .viewer import Viewer
 
 SIZE = (1280, 800)
 _PANEL = 21.0  # widths of the panel, in heights of a line of text
-_FRAMES_BUSY, _FRAMES_IDLE, _FRAMES_MOST = 30.0, 10.0, 60.0
+# Frames a second; the pause between two is up to a millisecond too long for 30.
+_FRAMES_BUSY, _FRAMES_IDLE, _FRAMES_MOST = 31.0, 10.0, 60.0
 _STILL = (
     imgui.WindowFlags_.no_decoration
     | imgui.WindowFlags_.no_move
