@@ -383,6 +383,9 @@ class Films:
 
     def __init__(self) -> None: ...
 
+    def settle(self) -> None:
+        """Keeps the memory of one film at most."""
+
 class Renderer:
     """
     Renders a scene into its film, as far as it is asked to, again and again.

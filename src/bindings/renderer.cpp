@@ -146,7 +146,8 @@ std::optional<Out<double, Split>> contributions(const Renderer& renderer) {
 void bind_renderer(nb::module_& m) {
     nb::class_<Films>(m, "Films",
                       "Memory for renderers that follow each other: what one had, the next clears and takes.")
-        .def(nb::init<>());
+        .def(nb::init<>())
+        .def("settle", &Films::settle, "Keeps the memory of one film at most.");
     nb::class_<Renderer>(m, "Renderer",
                          "Renders a scene into its film, as far as it is asked to, again and again.")
         .def(

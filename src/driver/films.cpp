@@ -23,6 +23,11 @@ Film Films::take(uint32_t width, uint32_t height, int threads) {
     return *std::move(film);
 }
 
+void Films::settle() {
+    const std::lock_guard lock(mutex_);
+    if (films_.size() > 1) films_.resize(1, Film(0, 0));
+}
+
 void Films::give_back(Film film) {
     const std::lock_guard lock(mutex_);
     const bool fits =

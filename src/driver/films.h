@@ -15,6 +15,8 @@ class Films {
     /// A film without samples. threads: that clear one which was used.
     Film take(uint32_t width, uint32_t height, int threads);
     void give_back(Film film);
+    /// Keeps one at most: for when no flight goes on.
+    void settle();
 
   private:
     // One for what is shown, one for what follows.

@@ -244,6 +244,7 @@ class Session:
                 return
             with self._changed:
                 self._advanced(live, stride)
+        self._films.settle()
         if self._step(version, live, lambda: _rest(live, config)):
             live.note_error()
             self._finish(version, State.DONE)
