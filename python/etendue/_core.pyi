@@ -383,8 +383,8 @@ class Films:
 
     def __init__(self) -> None: ...
 
-    def settle(self) -> None:
-        """Keeps the memory of one film at most."""
+    def settle(self, width: int, height: int) -> None:
+        """Has the memory of one film ready, and no more."""
 
 class Renderer:
     """

@@ -147,7 +147,8 @@ void bind_renderer(nb::module_& m) {
     nb::class_<Films>(m, "Films",
                       "Memory for renderers that follow each other: what one had, the next clears and takes.")
         .def(nb::init<>())
-        .def("settle", &Films::settle, "Keeps the memory of one film at most.");
+        .def("settle", &Films::settle, nb::arg("width"), nb::arg("height"),
+             nb::call_guard<nb::gil_scoped_release>(), "Has the memory of one film ready, and no more.");
     nb::class_<Renderer>(m, "Renderer",
                          "Renders a scene into its film, as far as it is asked to, again and again.")
         .def(

@@ -23,9 +23,11 @@ Film Films::take(uint32_t width, uint32_t height, int threads) {
     return *std::move(film);
 }
 
-void Films::settle() {
+void Films::settle(uint32_t width, uint32_t height) {
+    Film ready = take(width, height, 1);
     const std::lock_guard lock(mutex_);
-    if (films_.size() > 1) films_.resize(1, Film(0, 0));
+    films_.clear();
+    films_.push_back(std::move(ready));
 }
 
 void Films::give_back(Film film) {

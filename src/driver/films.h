@@ -15,8 +15,8 @@ class Films {
     /// A film without samples. threads: that clear one which was used.
     Film take(uint32_t width, uint32_t height, int threads);
     void give_back(Film film);
-    /// Keeps one at most: for when no flight goes on.
-    void settle();
+    /// Has one ready, and no more: for when no flight goes on, and the next change may come.
+    void settle(uint32_t width, uint32_t height);
 
   private:
     // One for what is shown, one for what follows.

@@ -244,7 +244,7 @@ class Session:
                 return
             with self._changed:
                 self._advanced(live, stride)
-        self._films.settle()
+        self._films.settle(config.framebuffer.res_w, config.framebuffer.res_h)
         if self._step(version, live, lambda: _rest(live, config)):
             live.note_error()
             self._finish(version, State.DONE)
