@@ -130,7 +130,7 @@ uint32_t LightTree::build(std::span<const EmitterBounds> emitters, std::span<uin
     for (uint32_t slot = 0; slot < parts.size(); ++slot) {
         const uint64_t way = path | uint64_t{slot} << (BITS * depth);
         nodes_[index].set(slot, parts[slot].bounds);
-        uint32_t child;
+        uint32_t child = 0;
         if (parts[slot].indices.size() == 1) {
             child = LEAF | parts[slot].indices[0];
             ways_[parts[slot].indices[0]] = {way, depth + 1};

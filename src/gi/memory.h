@@ -19,7 +19,7 @@ struct BulkAllocator {
 
     BulkAllocator() = default;
     template <class U>
-    BulkAllocator(const BulkAllocator<U>&) {}
+    BulkAllocator(const BulkAllocator<U>&) {}  // NOLINT(google-explicit-constructor): as all allocators
     template <class U>
     bool operator==(const BulkAllocator<U>&) const {
         return true;
