@@ -78,7 +78,7 @@ inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, const v
         context.scene.sample_light_source(light_choice, reference, u.x + finer_digits * 0x1p-24);
     if (!choice) return vec3(0);
     u.x = choice->remapped;
-    const auto sample = choice->light->sample_Li(reference, choice->triangle, u);
+    const auto sample = choice->light->sample_Li(reference, choice->triangle, u, mis != Mis::none);
     if (!sample) return vec3(0);
     const vec3 reflected = hit.f(sample->wi) * std::abs(glm::dot(sample->wi, hit.frame.n)) * sample->radiance;
     if (is_black(reflected) || !context.visible(hit, *sample)) return vec3(0);

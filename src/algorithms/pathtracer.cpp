@@ -71,7 +71,7 @@ class Pathtracer : public Algorithm {
   private:
     float light_pdf(const Context& context, const vec3& reference, const SurfaceHit& hit) const {
         return context.scene.light_source_pdf(light_choice_, reference, hit.light, hit.triangle) *
-               hit.light->pdf_Li(hit);
+               hit.light->pdf_Li(hit, mis_ != Mis::none);
     }
 
     const int MAX_CAM_PATH_LENGTH;

@@ -126,7 +126,7 @@ struct PythonLight {
     const Light* operator->() const { return &scene->lights()[index]; }
 };
 
-nb::dict draw_light(const PythonLight& light, const Vectors3& reference, const Vectors2& u) {
+nb::dict draw_light(const PythonLight& light, const Vectors3& reference, const Vectors2& u, bool with_mis) {
     require_same_length(reference.shape(0), u.shape(0), "reference and u");
     const size_t n = reference.shape(0);
     auto wi = new_array<OutVectors3>({n, 3}), radiance = new_array<OutVectors3>({n, 3}),
@@ -139,7 +139,7 @@ nb::dict draw_light(const PythonLight& light, const Vectors3& reference, const V
         const auto triangle = triangles.sample(numbers.x);
         numbers.x = triangle.remapped;
         chosen.data()[i] = static_cast<int32_t>(triangle.index);
-        const auto sample = light->sample_Li(vec3_at(reference, i), triangle.index, numbers);
+        const auto sample = light->sample_Li(vec3_at(reference, i), triangle.index, numbers, with_mis);
         if (!sample) continue;
         set_vec3(wi, i, sample->wi);
         set_vec3(radiance, i, sample->radiance);
@@ -181,7 +181,7 @@ void bind_light(nb::module_& m) {
             "triangle_count",
             [](const PythonLight& l) { return l->mesh() ? l->mesh()->triangles.size() : 1; },
             "Of its mesh; 1 for the sky.")
-        .def("sample_Li", &draw_light, nb::arg("reference"), nb::arg("u"),
+        .def("sample_Li", &draw_light, nb::arg("reference"), nb::arg("u"), nb::arg("with_mis") = false,
              "reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). Chooses a triangle by its power. "
              "Returns a dict "
              "of wi (n, 3), radiance "
@@ -190,16 +190,16 @@ void bind_light(nb::module_& m) {
              "not looked at.")
         .def(
             "pdf_Li",
-            [](const PythonLight& light, const Vectors3& reference, const Vectors3& wi) {
+            [](const PythonLight& light, const Vectors3& reference, const Vectors3& wi, bool with_mis) {
                 auto out = new_array<OutScalars>({wi.shape(0)});
                 const Distribution1D triangles = light.triangles();
                 for_each_find(light, reference, wi, [&](size_t i, const SurfaceHit& hit) {
                     if (triangles.total() > 0)
-                        out.data()[i] = triangles.pmf(hit.triangle) * light->pdf_Li(hit);
+                        out.data()[i] = triangles.pmf(hit.triangle) * light->pdf_Li(hit, with_mis);
                 });
                 return out;
             },
-            nb::arg("reference"), nb::arg("wi"),
+            nb::arg("reference"), nb::arg("wi"), nb::arg("with_mis") = false,
             "float32 (n, 3), (n, 3) -> (n,): density of `sample_Li` at wi, 0 where the ray finds something "
             "else first.")
         .def(
@@ -220,7 +220,7 @@ LightSampler::Kind light_choice_named(const std::string& name) {
 }
 
 nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vectors2& u,
-                      const std::string& light_choice) {
+                      const std::string& light_choice, bool with_mis) {
     require_same_length(reference.shape(0), u.shape(0), "reference and u");
     const size_t n = reference.shape(0);
     const LightSampler::Kind kind = light_choice_named(light_choice);
@@ -233,8 +233,8 @@ nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vecto
         const vec2 numbers = vec2_at(u, i);
         const auto choice = scene.sample_light_source(kind, vec3_at(reference, i), numbers.x);
         if (!choice) continue;
-        const auto sample =
-            choice->light->sample_Li(vec3_at(reference, i), choice->triangle, {choice->remapped, numbers.y});
+        const auto sample = choice->light->sample_Li(vec3_at(reference, i), choice->triangle,
+                                                     {choice->remapped, numbers.y}, with_mis);
         if (!sample) continue;
         index.data()[i] = static_cast<int32_t>(choice->light - scene.lights().data());
         set_vec3(wi, i, sample->wi);
@@ -249,7 +249,7 @@ nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vecto
 }
 
 auto light_pdf(const Scene& scene, const Vectors3& reference, const Vectors3& wi,
-               const std::string& light_choice) {
+               const std::string& light_choice, bool with_mis) {
     require_same_length(reference.shape(0), wi.shape(0), "reference and wi");
     const size_t n = reference.shape(0);
     const LightSampler::Kind kind = light_choice_named(light_choice);
@@ -260,8 +260,8 @@ auto light_pdf(const Scene& scene, const Vectors3& reference, const Vectors3& wi
         const SurfaceHit hit = scene.intersect({from, vec3_at(wi, i)});
         index.data()[i] = hit.light ? static_cast<int32_t>(hit.light - scene.lights().data()) : -1;
         if (hit.light)
-            pdf.data()[i] =
-                scene.light_source_pdf(kind, from, hit.light, hit.triangle) * hit.light->pdf_Li(hit);
+            pdf.data()[i] = scene.light_source_pdf(kind, from, hit.light, hit.triangle) *
+                            hit.light->pdf_Li(hit, with_mis);
     }
     return std::pair{index, pdf};
 }
@@ -343,7 +343,7 @@ void bind_queries(nb::module_& m) {
         "choice "
         "(n,).");
     scene.def("sample_light", &sample_light, nb::arg("reference"), nb::arg("u"),
-              nb::arg("light_choice") = "tree",
+              nb::arg("light_choice") = "tree", nb::arg("with_mis") = true,
               "reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). One light sample each, as next event "
               "estimation draws it:\na dict of index (n,) int32 of the light, -1 where it failed, wi (n, 3), "
               "radiance "
@@ -352,6 +352,7 @@ void bind_queries(nb::module_& m) {
               "looked at.");
     scene.def(
         "light_pdf", &light_pdf, nb::arg("reference"), nb::arg("wi"), nb::arg("light_choice") = "tree",
+        nb::arg("with_mis") = true,
         "float32 (n, 3), (n, 3) -> index (n,) int32 of the light that each ray finds, -1 for none, and (n,): "
         "density of\n`sample_light` at wi.");
     scene.def(

@@ -18,13 +18,15 @@ class Light {
     static std::vector<Light> find_all(const LightContext& context);
 
     /// A point of one triangle of the light's mesh, or of the whole sky. Empty where it cannot shine on `reference`.
-    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u) const {
-        return std::visit([&](const auto& light) { return light.sample_Li(reference, triangle, u); }, kind_);
+    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u,
+                                         bool with_mis) const {
+        return std::visit(
+            [&](const auto& light) { return light.sample_Li(reference, triangle, u, with_mis); }, kind_);
     }
     /// Density with which sample_Li would have drawn the direction `-hit.wo` in which a ray from the
     /// reference point, `hit.distance` away, found this triangle of the light.
-    float pdf_Li(const SurfaceHit& hit) const {
-        return std::visit([&](const auto& light) { return light.pdf_Li(hit); }, kind_);
+    float pdf_Li(const SurfaceHit& hit, bool with_mis) const {
+        return std::visit([&](const auto& light) { return light.pdf_Li(hit, with_mis); }, kind_);
     }
     /// Radiance emitted from a hit of this light towards hit.wo.
     vec3 Le(const SurfaceHit& hit) const {

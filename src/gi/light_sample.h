@@ -3,7 +3,8 @@
 // All pdfs are in solid angle at the reference point; conversions happen in there, never in an estimator.
 //     find       makes the lights of this kind that a scene has;
 //     sample_Li  draws a direction to one triangle of the light's mesh, or to the sky, with density pdf_Li, and what
-//                arrives if nothing is between;
+//                arrives if nothing is between; `with_mis` says that light which rays find by chance is counted
+//                beside, so that what they find easily may be left to them;
 //     Le         is what a ray that found the light by chance sees;
 //     power      is what lights are chosen by, with
 //     bounds     of each triangle, where the light has a mesh.

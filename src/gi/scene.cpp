@@ -225,7 +225,8 @@ size_t Scene::memory_bytes() const {
                  mesh.facets.size() * sizeof(Facet) + mesh.shading.size() * sizeof(FacetShading);
     }
     for (const auto& texture : textures()) bytes += texture->memory_bytes();
-    if (sky_image_) bytes += sky_image_->pixels.size() * (sizeof(vec3) + sizeof(float) + sizeof(uint32_t));
+    if (sky_image_)
+        bytes += sky_image_->pixels.size() * (sizeof(vec3) + 2 * (sizeof(float) + sizeof(uint32_t)));
     return bytes;
 }
 

@@ -149,6 +149,13 @@ MUTANTS = (
         (LIGHTS,),
     ),
     Mutant(
+        "sky sampled by one density and weighted by another",
+        "algorithms/pathtracer.cpp",
+        "mis_ != Mis::none",
+        "false",
+        (ANALYTIC, "-k", "uneven_sky"),
+    ),
+    Mutant(
         "Jacobian of the half vector missing",
         "gi/microfacet.h",
         "D(wo + wi) / (2 * (wo.z + root(wo)))",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import zlib
 from pathlib import Path
 
@@ -33,7 +34,7 @@ def facing(directions: NDArray[np.float32]) -> NDArray[np.float64]:
 
 
 def sky_cells(
-    light: _core.Light, reference: NDArray[np.float32], columns: int, lines: int
+    light: _core.Light, reference: NDArray[np.float32], columns: int, lines: int, with_mis: bool
 ) -> NDArray[np.float64]:
     """
     The integral of pdf_Li over cells of an equirectangular grid, which pixels of skies are whole numbers
@@ -51,15 +52,19 @@ def sky_cells(
                 np.broadcast_arrays(r[:, None] * np.cos(phi), y[:, None], r[:, None] * np.sin(phi)), axis=-1
             )
             wi = wi.reshape(-1, 3).astype(np.float32)
-            total += light.pdf_Li(rows(reference, len(wi)), wi).reshape(lines, columns)
+            total += light.pdf_Li(rows(reference, len(wi)), wi, with_mis).reshape(lines, columns)
     return total / 16 * (cosines[:-1] - cosines[1:])[:, None] * (2 * np.pi / columns)
 
 
 def check(name: str, which: int, samples: int, depth: int, folder: Path) -> None:
     scene, reference = SCENES[name](), REFERENCES[which]
-    for index, light in enumerate(scene.lights):
+    # Only skies are sampled in another way with MIS.
+    for (index, light), with_mis in itertools.product(enumerate(scene.lights), (False, True)):
+        if with_mis and light.material is not None:
+            continue
         rng = np.random.default_rng([zlib.crc32(name.encode()), which, index])
-        sample = light.sample_Li(rows(reference, samples), rng.random((samples, 2), dtype=np.float32))
+        u = rng.random((samples, 2), dtype=np.float32)
+        sample = light.sample_Li(rows(reference, samples), u, with_mis)
         visible = seen(scene, light, reference, sample)
         wi = sample["wi"][visible]
         if light.material is None:
@@ -72,7 +77,7 @@ def check(name: str, which: int, samples: int, depth: int, folder: Path) -> None
                 (u * columns).astype(int), columns - 1
             )
             observed = np.bincount(cell, minlength=lines * columns).reshape(lines, columns)
-            integrals = sky_cells(light, reference, columns, lines)
+            integrals = sky_cells(light, reference, columns, lines, with_mis)
             partly = np.zeros_like(integrals, dtype=bool)
             hidden = sample["pdf"] > 0
             hidden &= ~visible

@@ -25,8 +25,8 @@ EmitterBounds AreaLight::bounds(uint32_t triangle) const {
         glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), {facet.normal, 1}, facet.area * exitance_};
 }
 
-std::optional<LightSample> AreaLight::sample_Li(const vec3& reference, uint32_t triangle,
-                                                const vec2& u) const {
+std::optional<LightSample> AreaLight::sample_Li(const vec3& reference, uint32_t triangle, const vec2& u,
+                                                bool) const {
     const vec2 b = uniform_triangle(u);
     const Facet& facet = mesh_->facets[triangle];
     const SurfacePoint point = facet.point(b);
@@ -43,7 +43,7 @@ std::optional<LightSample> AreaLight::sample_Li(const vec3& reference, uint32_t 
                                       distance2 / (cos_light * facet.area), point, false);
 }
 
-float AreaLight::pdf_Li(const SurfaceHit& hit) const {
+float AreaLight::pdf_Li(const SurfaceHit& hit, bool) const {
     // hit.point.normal is turned towards wo; the back of a light is never sampled.
     const float cos_light = glm::dot(hit.wo, hit.point.normal);
     return hit.front && cos_light > 0 ? sqr(hit.distance) / (cos_light * mesh_->facets[hit.triangle].area)

@@ -16,8 +16,9 @@ class AreaLight {
     AreaLight(const Mesh& mesh, const Material& material);
 
     /// A uniform point on the triangle: pdf_area = 1 / its area, turned into solid angle.
-    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u) const;
-    float pdf_Li(const SurfaceHit& hit) const;
+    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u,
+                                         bool with_mis) const;
+    float pdf_Li(const SurfaceHit& hit, bool with_mis) const;
     vec3 Le(const SurfaceHit& hit) const { return hit.front ? material_->emission_at(hit.uv()) : vec3(0); }
     vec3 Le(const vec3&) const { return vec3(0); }
     float power() const { return power_; }

@@ -47,6 +47,17 @@ SkyLight::SkyLight(const Sky& sky, float scene_radius) : sky_(&sky) {
             }
         }
         cells_ = Distribution2D(weights, w, h);
+        double above_mean = 0;
+        for (uint32_t y = 0; y < h; ++y) {
+            const auto mean = static_cast<float>(total * (row_cosines_[y] - row_cosines_[y + 1]) / (2 * w));
+            for (uint32_t x = 0; x < w; ++x) {
+                float& weight = weights[size_t{y} * w + x];
+                weight = std::max(weight - mean, 0.f);
+                above_mean += weight;
+            }
+        }
+        constexpr double ROUNDING = 1e-3;
+        if (above_mean > ROUNDING * total) bright_ = Distribution2D(weights, w, h);
         mean_luminance = total / (4 * M_PI);
     }
     // Radiance from the whole sphere of directions through the cross-section of the scene's bounding sphere.
@@ -73,13 +84,13 @@ vec3 SkyLight::radiance_at(const vec2& uv) const {
     return glm::mix(top, bottom, y - y_floor) * sky_->intensity;
 }
 
-std::optional<LightSample> SkyLight::sample_Li(const vec3&, uint32_t, const vec2& u) const {
+std::optional<LightSample> SkyLight::sample_Li(const vec3&, uint32_t, const vec2& u, bool with_mis) const {
     if (sky_->width == 0) {
         return LightSample{vec3(sky_->intensity), uniform_sphere(u), UNIFORM_SPHERE_PDF, {}, true};
     }
     if (cells_.total() <= 0) return std::nullopt;
     // A cell by its power, then uniformly in solid angle within it.
-    const Distribution2D::Choice cell = cells_.sample(u);
+    const Distribution2D::Choice cell = cells(with_mis).sample(u);
     for (int32_t dy = -1; dy <= 1; ++dy)
         __builtin_prefetch(&pixel(static_cast<int32_t>(cell.x), static_cast<int32_t>(cell.y) + dy));
     const float cos_theta = glm::mix(row_cosines_[cell.y], row_cosines_[cell.y + 1], cell.remapped.y);
@@ -91,14 +102,14 @@ std::optional<LightSample> SkyLight::sample_Li(const vec3&, uint32_t, const vec2
     return LightSample{radiance, wi, pdf_in_row(cell.y, cell.pmf), {}, true};
 }
 
-float SkyLight::pdf(const vec3& direction) const {
+float SkyLight::pdf(const vec3& direction, bool with_mis) const {
     if (sky_->width == 0) return UNIFORM_SPHERE_PDF;
     if (cells_.total() <= 0) return 0;
     const uint32_t w = cells_.width(), h = cells_.height();
     const vec2 uv = uv_of(direction);
     const uint32_t x = std::min(static_cast<uint32_t>(uv.x * static_cast<float>(w)), w - 1);
     const uint32_t y = std::min(static_cast<uint32_t>(uv.y * static_cast<float>(h)), h - 1);
-    return pdf_in_row(y, cells_.pmf(x, y));
+    return pdf_in_row(y, cells(with_mis).pmf(x, y));
 }
 
 float SkyLight::pdf_in_row(uint32_t y, float pmf) const {

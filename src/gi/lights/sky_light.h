@@ -27,15 +27,16 @@ class SkyLight {
 
     SkyLight(const Sky& sky, float scene_radius);
 
-    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u) const;
-    float pdf_Li(const SurfaceHit& miss) const { return pdf(-miss.wo); }
+    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u,
+                                         bool with_mis) const;
+    float pdf_Li(const SurfaceHit& miss, bool with_mis) const { return pdf(-miss.wo, with_mis); }
     vec3 Le(const SurfaceHit& miss) const { return Le(-miss.wo); }
     vec3 Le(const vec3& direction) const;
     float power() const { return power_; }
     const Mesh* mesh() const { return nullptr; }
 
     /// Solid-angle density of sample_Li in a unit direction.
-    float pdf(const vec3& direction) const;
+    float pdf(const vec3& direction, bool with_mis) const;
 
   private:
     const vec3& pixel(int32_t x, int32_t y) const;
@@ -44,8 +45,16 @@ class SkyLight {
     float pdf_in_row(uint32_t y, float pmf) const;
 
     const Sky* sky_;
+    const Distribution2D& cells(bool with_mis) const {
+        return with_mis && bright_.total() > 0 ? bright_ : cells_;
+    }
+
     // One cell a pixel, weighted by luminance x solid angle.
     Distribution2D cells_;
+    // The same by how much brighter than the mean they are, for MIS: BSDF sampling finds the even part of a sky better
+    // (Karlik et al. 2019, "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling"). Empty
+    // where the sky is even.
+    Distribution2D bright_;
     std::vector<float> row_cosines_;  // cos theta at the edges of the rows
     float power_;
 };
