@@ -1,15 +1,18 @@
 """Renders a tiny scene and ends; what the instruction counter runs.
 
-python tests/performance/tiny.py SCENE SPP
+python -m tests.performance.tiny SCENE SPP
 """
 
 from __future__ import annotations
 
+import os
 import sys
 
 import numpy as np
 
-from etendue import _core
+from benchmarks.renderers import core_at
+
+_core = core_at(os.environ.get("ETENDUE_BENCHMARK_CORE"))
 
 SIZE = 32
 
