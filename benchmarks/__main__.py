@@ -35,6 +35,7 @@ def run_compare(arguments: argparse.Namespace) -> tuple[str, Any]:
 
     results = []
     options = {"as_users": True} if arguments.settings == "users" else {}
+    options |= {"uncoated": True} if arguments.uncoated else {}
     for scene in arguments.scenes:
         results += compare(
             scene,
@@ -146,6 +147,11 @@ def parser() -> argparse.ArgumentParser:
         choices=("matched", "users"),
         default="matched",
         help="matched: box filter, no roulette, equal path length; users: each renderer's defaults",
+    )
+    compare.add_argument(
+        "--uncoated",
+        action="store_true",
+        help="coated materials without their coats, as no two renderers agree on them",
     )
     compare.set_defaults(run=run_compare)
     limit = commands.add_parser(

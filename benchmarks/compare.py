@@ -68,6 +68,8 @@ def compare(
     """Builds all, then renders turn by turn; the fixed cost of a call, seen at 1 spp, is not counted."""
     path = prepared(scene)
     world = World.read(path)
+    if options.get("uncoated"):
+        world = world.uncoated()
     running: list[Contestant] = []
     # Seconds, and those of the processor.
     fixed: dict[str, tuple[float, float]] = {}

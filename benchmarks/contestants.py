@@ -60,6 +60,7 @@ class Contestant:
             "width": size,
             "height": size,
             "threads": given.pop("threads", threads),
+            "uncoated": given.pop("uncoated", False),
             "options": given,
         }
         self.name = name

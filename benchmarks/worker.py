@@ -1,6 +1,7 @@
-"""One renderer in a process of its own: reads commands, a JSON object a line, and answers alike.
+r"""One renderer in a process of its own: reads commands, a JSON object a line, and answers alike.
 
-python -m benchmarks.worker MODULE WORLD '{"width": ..., "height": ..., "threads": ..., "options": {...}}'
+python -m benchmarks.worker MODULE WORLD \
+    '{"width": ..., "height": ..., "threads": ..., "uncoated": false, "options": {...}}'
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ def main() -> None:
         print(json.dumps(values), file=answers)
 
     world = World.read(path)
+    if settings.pop("uncoated"):
+        world = world.uncoated()
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     backend = importlib.import_module(f"benchmarks.renderers.{module}")
     start = time.perf_counter()

@@ -6,7 +6,7 @@ It needs numpy alone, as the peers run in an interpreter of their own.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -77,6 +77,11 @@ class World:
     def is_common(self) -> bool:
         """Whether all renderers define all of its materials alike, so that one reference serves all."""
         return {material.kind for material in self.materials} <= self.COMMON
+
+    def uncoated(self) -> World:
+        """The same without coats, which every renderer defines in its own way: their diffuse bases alone."""
+        materials = [replace(m, kind="diffuse") if m.kind == "layered_ggx" else m for m in self.materials]
+        return replace(self, materials=materials)
 
     def write(self, path: Path) -> None:
         """Into one file that `read` reads."""

@@ -57,6 +57,16 @@ def test_a_world_survives_its_file(tmp_path: Path) -> None:
     assert np.array_equal(image, etendue.Renderer(written, 16, 16, 1, {}).render(2, 3))
 
 
+def test_a_world_without_its_coats() -> None:
+    coated = world()
+    coated.materials.append(Material("layered_ggx", (0.1, 0.2, 0.3), ior=1.4, albedo_texture=0))
+    bare = coated.uncoated()
+    assert bare.materials[-1] == Material("diffuse", (0.1, 0.2, 0.3), ior=1.4, albedo_texture=0)
+    assert bare.materials[:-1] == coated.materials[:-1]
+    assert not coated.is_common
+    assert bare.is_common == world().is_common
+
+
 def test_the_rays_recorded_are_those_of_the_render() -> None:
     renderer = etendue.Renderer(world(), 24, 16, 2, {})
     record = renderer.record(3)
