@@ -9,7 +9,6 @@ import os
 import sys
 
 import numpy as np
-
 from benchmarks.renderers import core_at
 
 _core = core_at(os.environ.get("ETENDUE_BENCHMARK_CORE"))
