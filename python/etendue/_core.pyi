@@ -207,14 +207,14 @@ class Scene:
         mesh, int32 (n,), -1 where there is none to choose, and the probability of that choice (n,).
         """
 
-    def sample_light(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], light_choice: str = 'tree') -> dict:
+    def sample_light(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True) -> dict:
         """
         reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). One light sample each, as next event estimation draws it:
         a dict of index (n,) int32 of the light, -1 where it failed, wi (n, 3), radiance (n, 3), position (n, 3) on the light and
         pdf (n,), the choice of the light included. Occlusion is not looked at.
         """
 
-    def light_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], light_choice: str = 'tree') -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
+    def light_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
         """
         float32 (n, 3), (n, 3) -> index (n,) int32 of the light that each ray finds, -1 for none, and (n,): density of
         `sample_light` at wi.
@@ -292,13 +292,13 @@ class Light:
     def triangle_count(self) -> int:
         """Of its mesh; 1 for the sky."""
 
-    def sample_Li(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> dict:
+    def sample_Li(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], with_mis: bool = False) -> dict:
         """
         reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). Chooses a triangle by its power. Returns a dict of wi (n, 3), radiance (n, 3), pdf (n,), triangle (n,) int32 and
         position (n, 3) on the light; pdf is 0 where the point drawn cannot shine there. Occlusion is not looked at.
         """
 
-    def pdf_Li(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+    def pdf_Li(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], with_mis: bool = False) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
         """
         float32 (n, 3), (n, 3) -> (n,): density of `sample_Li` at wi, 0 where the ray finds something else first.
         """
