@@ -2,6 +2,13 @@
 
 namespace etendue {
 
+namespace {
+
+// Of one emitter, so that sums stay numbers: what is brighter, or not a number of radiance at all, is still chosen.
+constexpr float MOST_POWER = 1e30f;
+
+}  // namespace
+
 LightSampler::LightSampler(std::span<const Light> lights) : lights_(lights), first_(lights.size()) {
     std::vector<EmitterBounds> bounds;
     std::vector<double> powers;
@@ -14,13 +21,15 @@ LightSampler::LightSampler(std::span<const Light> lights) : lights_(lights), fir
         first_[i] = static_cast<uint32_t>(emitters_.size());
         for (uint32_t triangle = 0; triangle < lights[i].mesh()->triangles.size(); ++triangle) {
             bounds.push_back(lights[i].bounds(triangle));
-            add(i, triangle, bounds.back().power);
+            float& power = bounds.back().power;
+            power = std::min(power, MOST_POWER);
+            add(i, triangle, power);
         }
     }
     for (size_t i = 0; i < lights.size(); ++i) {
         if (lights[i].mesh()) continue;
         first_[i] = static_cast<uint32_t>(emitters_.size());
-        add(i, 0, lights[i].power());
+        add(i, 0, std::min(lights[i].power(), MOST_POWER));
     }
     by_power_ = Distribution1D(powers);
     if (bounds.size() < WORTH_A_TREE || by_power_.total() <= 0) return;

@@ -6,6 +6,9 @@ namespace etendue {
 
 namespace {
 
+/// Whether a node has something to choose, of a brightness that numbers can tell.
+bool may_choose(float total) { return total > 0 && total < INFINITE; }
+
 /// A direction turned towards another by an angle; both unit.
 vec3 turned(const vec3& from, const vec3& to, float angle) {
     const vec3 aside = to - glm::dot(to, from) * from;
@@ -174,7 +177,7 @@ std::optional<LightTree::Choice> LightTree::sample(const vec3& reference, double
         const Node& node = nodes_[index];
         const Importances importance = importances(node, reference);
         const float total = std::accumulate(importance.begin(), importance.end(), 0.f);
-        if (total <= 0) return std::nullopt;
+        if (!may_choose(total)) return std::nullopt;
         const double target = u * total;
         double from = 0, chosen_from = 0;
         uint32_t chosen = 0;
@@ -199,7 +202,7 @@ float LightTree::pmf(const vec3& reference, uint32_t emitter) const {
         const Node& node = nodes_[index];
         const Importances importance = importances(node, reference);
         const float total = std::accumulate(importance.begin(), importance.end(), 0.f);
-        if (total <= 0) return 0;
+        if (!may_choose(total)) return 0;
         const uint32_t slot = slots >> (BITS * depth) & (WIDTH - 1);
         pmf *= importance[slot] / total;
         index = node.child[slot];

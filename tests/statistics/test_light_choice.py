@@ -134,6 +134,20 @@ def test_the_tree_prefers_what_is_near_and_faces_the_point() -> None:
     assert p.sum() == pytest.approx(1, abs=1e-5)
 
 
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("strength", [1e30, 1e38, np.inf])
+def test_lamps_brighter_than_numbers(kind: str, strength: float) -> None:
+    """Their choice, and the points on them, stay numbers, far away and on the lamp itself."""
+    world = _core.Scene([square(), square(3, 2, 1)], [lamp(emissive_strength=strength), lamp()])
+    on_it = np.array([0.2, 2, 0.1], np.float32)
+    rng = np.random.default_rng(8)
+    for reference in (*REFERENCES, on_it):
+        sample = world.sample_light(rows(reference, 500), rng.random((500, 2), dtype=np.float32), kind)
+        assert np.isfinite(sample["position"]).all()
+        assert np.isfinite(sample["wi"]).all()
+        assert np.isfinite(probabilities(world, reference, kind)).all()
+
+
 def test_powers() -> None:
     """
     Luminance of the radiance x pi x area; of a sky, x 4 pi x the cross-section of the sphere around the
