@@ -62,14 +62,17 @@ size_t cut(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices,
         EmitterBounds& bucket = buckets[bucket_of(i)];
         bucket = bucket.united(emitters[i]);
     }
+    // after[i]: all from bucket i on.
+    std::array<EmitterBounds, BUCKETS> after = buckets;
+    for (int i = BUCKETS - 2; i > 0; --i) after[i] = after[i].united(after[i + 1]);
+    EmitterBounds before;
     float least = INFINITE;
     int best = 1;
     for (int end = 1; end < BUCKETS; ++end) {
-        EmitterBounds before, after;
-        for (int i = 0; i < BUCKETS; ++i)
-            (i < end ? before : after) = (i < end ? before : after).united(buckets[i]);
-        const float of_cut = cost(before) + cost(after);
-        if (before.power > 0 && after.power > 0 && of_cut < least) least = of_cut, best = end;
+        before = before.united(buckets[end - 1]);
+        if (before.power == 0 || after[end].power == 0) continue;
+        const float of_cut = cost(before) + cost(after[end]);
+        if (of_cut < least) least = of_cut, best = end;
     }
     const auto middle =
         std::partition(indices.begin(), indices.end(), [&](uint32_t i) { return bucket_of(i) < best; });
@@ -117,16 +120,21 @@ LightTree::LightTree(std::span<const EmitterBounds> emitters) : ways_(emitters.s
 
 uint32_t LightTree::build(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices, uint64_t path,
                           uint32_t depth) {
-    // The costliest part is cut again, until there are as many as a node holds.
-    std::vector<Part> parts{{emitters, indices}};
-    while (parts.size() < WIDTH) {
-        const auto costliest = std::ranges::max_element(
-            parts, {}, [](const Part& part) { return part.indices.size() == 1 ? -1 : cost(part.bounds); });
-        if (costliest->indices.size() == 1) break;
-        const std::span<uint32_t> whole = costliest->indices;
-        const size_t before = cut(emitters, whole, depth);
-        *costliest = {emitters, whole.first(before)};
-        parts.emplace_back(emitters, whole.subspan(before));
+    std::vector<Part> parts;
+    if (indices.size() <= WIDTH) {
+        for (size_t i = 0; i < indices.size(); ++i) parts.emplace_back(emitters, indices.subspan(i, 1));
+    } else {
+        // The costliest part is cut again, until there are as many as a node holds.
+        parts.emplace_back(emitters, indices);
+        while (parts.size() < WIDTH) {
+            const auto costliest = std::ranges::max_element(parts, {}, [](const Part& part) {
+                return part.indices.size() == 1 ? -1 : cost(part.bounds);
+            });
+            const std::span<uint32_t> whole = costliest->indices;
+            const size_t before = cut(emitters, whole, depth);
+            *costliest = {emitters, whole.first(before)};
+            parts.emplace_back(emitters, whole.subspan(before));
+        }
     }
     const auto index = static_cast<uint32_t>(nodes_.size());
     nodes_.emplace_back();
