@@ -69,6 +69,8 @@ inline std::array<float, 3> from_vec3(const vec3& v) { return {v.x, v.y, v.z}; }
 /// What each file of bindings adds to the module.
 void bind_registry(nb::module_& m);
 void bind_scene(nb::module_& m);
+void bind_bsdf(nb::module_& m);
+void bind_lights(nb::module_& m);
 void bind_study(nb::module_& m);
 void bind_renderer(nb::module_& m);
 void bind_paths(nb::module_& m);

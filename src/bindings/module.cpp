@@ -9,6 +9,8 @@ NB_MODULE(_core, m) {
     nb::set_leak_warnings(false);
     etendue::bind_registry(m);
     etendue::bind_scene(m);
+    etendue::bind_bsdf(m);
+    etendue::bind_lights(m);
     etendue::bind_study(m);
     etendue::bind_renderer(m);
     etendue::bind_paths(m);

@@ -1,0 +1,106 @@
+// BSDFs on their own, over whole arrays.
+#include <nanobind/stl/array.h>
+
+#include "bindings/arrays.h"
+#include "gi/bsdf.h"
+
+namespace etendue {
+
+namespace {
+
+/// A BSDF with its parameters, in the local frame.
+struct PythonBsdf {
+    BsdfKind kind;
+    Surface surface;
+};
+
+OutVectors3 evaluate_f(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& wi) {
+    require_same_length(wo.shape(0), wi.shape(0), "wo and wi");
+    auto out = new_array<OutVectors3>({wo.shape(0), 3});
+    for (size_t i = 0; i < wo.shape(0); ++i)
+        set_vec3(out, i, bsdf_f(bsdf.kind, bsdf.surface, vec3_at(wo, i), vec3_at(wi, i)));
+    return out;
+}
+
+OutScalars evaluate_pdf(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& wi) {
+    require_same_length(wo.shape(0), wi.shape(0), "wo and wi");
+    auto out = new_array<OutScalars>({wo.shape(0)});
+    for (size_t i = 0; i < wo.shape(0); ++i) {
+        out.data()[i] = bsdf_pdf(bsdf.kind, bsdf.surface, vec3_at(wo, i), vec3_at(wi, i));
+    }
+    return out;
+}
+
+nb::dict draw_bsdf(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& u) {
+    require_same_length(wo.shape(0), u.shape(0), "wo and u");
+    const size_t n = wo.shape(0);
+    auto wi = new_array<OutVectors3>({n, 3}), weight = new_array<OutVectors3>({n, 3});
+    auto pdf = new_array<OutScalars>({n}), eta2 = new_array<OutScalars>({n});
+    auto type = new_array<Out<uint8_t, nb::shape<-1>>>({n});
+    for (size_t i = 0; i < n; ++i) {
+        const vec3 random = vec3_at(u, i);
+        const auto sample =
+            bsdf_sample(bsdf.kind, bsdf.surface, vec3_at(wo, i), random.x, {random.y, random.z});
+        if (!sample) continue;
+        set_vec3(wi, i, sample->wi);
+        set_vec3(weight, i, sample->weight);
+        pdf.data()[i] = sample->pdf;
+        eta2.data()[i] = sample->eta2;
+        type.data()[i] = sample->type;
+    }
+    nb::dict out;
+    out["wi"] = wi, out["weight"] = weight, out["pdf"] = pdf, out["eta2"] = eta2, out["type"] = type;
+    return out;
+}
+
+}  // namespace
+
+void bind_bsdf(nb::module_& m) {
+    nb::class_<PythonBsdf>(
+        m, "Bsdf",
+        "A BSDF in its local frame: z is the shading normal, wo.z > 0, both directions unit and away from "
+        "the\n"
+        "surface, wi.z < 0 for transmission. f excludes the cosine; pdfs are in solid angle.")
+        .def(
+            "__init__",
+            [](PythonBsdf* self, const std::string& type, const std::array<float, 3>& albedo, float ior,
+               float roughness, float absorb, bool coated, bool front) {
+                new (self)
+                    PythonBsdf{bsdf_of(type), {to_vec3(albedo), ior, roughness, absorb, coated, front}};
+            },
+            nb::arg("type"), nb::arg("albedo") = std::array{0.8f, 0.8f, 0.8f}, nb::arg("ior") = 1.5f,
+            nb::arg("roughness") = 0.1f, nb::arg("absorb") = 0.f, nb::arg("coated") = false,
+            nb::arg("front") = true,
+            "type: a BSDF or material type. front: whether wo is on the outside. Raises ValueError for an "
+            "unknown type.")
+        .def_prop_ro("name", [](const PythonBsdf& b) { return std::string(bsdfs()[b.kind].name); })
+        .def_prop_ro(
+            "is_delta", [](const PythonBsdf& b) { return bsdfs()[b.kind].is_delta; },
+            "Whether f and pdf are 0 everywhere.")
+        .def_prop_ro(
+            "is_reciprocal", [](const PythonBsdf& b) { return bsdfs()[b.kind].is_reciprocal; },
+            "Whether f(wo, wi) == f(wi, wo) is claimed.")
+        .def("f", &evaluate_f, nb::arg("wo"), nb::arg("wi"),
+             "float32 (n, 3), (n, 3) -> (n, 3): the BSDF, cosine excluded.")
+        .def("pdf", &evaluate_pdf, nb::arg("wo"), nb::arg("wi"),
+             "float32 (n, 3), (n, 3) -> (n,): density of `sample` at wi.")
+        .def("sample", &draw_bsdf, nb::arg("wo"), nb::arg("u"),
+             "wo: float32 (n, 3). u: float32 (n, 3) in [0, 1): lobe choice and two for the direction.\n"
+             "Returns a dict of wi (n, 3), weight (n, 3) = f |cos| / pdf, pdf (n,), eta2 (n,) and type (n,) "
+             "uint8 of BRDF_ bits;\n"
+             "type is 0 where sampling failed.");
+    m.def(
+        "bsdfs",
+        [] {
+            std::vector<std::string> names;
+            for (const BsdfInfo& info : bsdfs()) names.emplace_back(info.name);
+            return names;
+        },
+        "Names of all BSDFs.");
+    m.attr("BRDF_DIFFUSE") = static_cast<int>(BRDF_DIFFUSE);
+    m.attr("BRDF_GLOSSY") = static_cast<int>(BRDF_GLOSSY);
+    m.attr("BRDF_SPECULAR") = static_cast<int>(BRDF_SPECULAR);
+    m.attr("BRDF_TRANSMISSION") = static_cast<int>(BRDF_TRANSMISSION);
+}
+
+}  // namespace etendue
