@@ -190,17 +190,6 @@ class Scene:
     def lights(self) -> list[Light]:
         """All lights, area lights in the order of their meshes."""
 
-    def intersect(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> dict:
-        """
-        float32 (n, 3), unit (n, 3). Returns a dict of distance (n,) (inf: miss), position (n, 3), normal and shading_normal
-        (n, 3) on the ray's side, uv (n, 2) and material (n,) int32 (-1: miss).
-        """
-
-    def occluded(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], target: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,))]:
-        """
-        float32 (n, 3), (n, 3) -> bool (n,): whether anything is between, ends included.
-        """
-
     def sample_light_source(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], light_choice: str = 'tree') -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
         """
         reference: float32 (n, 3). u: float32 (n,) in [0, 1) -> index of the light chosen there and of the triangle of its
@@ -223,6 +212,17 @@ class Scene:
     def light_source_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], index: int, triangle: int = 0, light_choice: str = 'tree') -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
         """
         float32 (n, 3) -> (n,): probability with which sample_light_source chooses this triangle of this light there.
+        """
+
+    def intersect(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> dict:
+        """
+        float32 (n, 3), unit (n, 3). Returns a dict of distance (n,) (inf: miss), position (n, 3), normal and shading_normal
+        (n, 3) on the ray's side, uv (n, 2) and material (n,) int32 (-1: miss).
+        """
+
+    def occluded(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], target: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,))]:
+        """
+        float32 (n, 3), (n, 3) -> bool (n,): whether anything is between, ends included.
         """
 
 class Bsdf:
