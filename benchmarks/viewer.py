@@ -145,6 +145,7 @@ class Probe:
         self._found[f"{name}: seen after, 95th percentile, ms"] = (
             1000 * statistics.quantiles(seconds, n=20)[-1]
         )
+        self._found[f"{name}: seen after, longest, ms"] = 1000 * max(seconds)
 
 
 def seconds_of(name: str) -> float:
