@@ -1,6 +1,9 @@
 #include "gi/camera.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <stdexcept>
+#include <vector>
 
 #include "gi/scene.h"
 
@@ -59,16 +62,24 @@ float Camera::depth(const vec3& point) const {
 
 float auto_focus(const Scene& scene, const Camera& camera) {
     const uint32_t w = camera.width(), h = camera.height();
-    double log_sum = 0;
-    size_t hits = 0;
-    for (uint32_t y = h * 3 / 8; y < h * 3 / 8 + std::max(h / 4, 1u); ++y) {
+    // By rows on all cores, added up in their order, so that the sum is the same on any number of them.
+    struct Row {
+        double log_sum = 0;
+        size_t hits = 0;
+    };
+    std::vector<Row> rows(std::max(h / 4, 1u));
+    oneapi::tbb::parallel_for(size_t{0}, rows.size(), [&](size_t row) {
+        const uint32_t y = h * 3 / 8 + static_cast<uint32_t>(row);
         for (uint32_t x = w * 3 / 8; x < w * 3 / 8 + std::max(w / 4, 1u); ++x) {
             const SurfaceHit hit = scene.intersect(camera.pinhole_ray(vec2(x, y) + 0.5f));
             if (!hit.valid || !(hit.distance > 0)) continue;
-            log_sum += std::log(hit.distance);
-            ++hits;
+            rows[row].log_sum += std::log(hit.distance);
+            ++rows[row].hits;
         }
-    }
+    });
+    double log_sum = 0;
+    size_t hits = 0;
+    for (const Row& row : rows) log_sum += row.log_sum, hits += row.hits;
     return hits > 0 ? static_cast<float>(std::exp(log_sum / static_cast<double>(hits)))
                     : camera.settings().focal_depth;
 }
