@@ -11,8 +11,8 @@
 
 namespace etendue {
 
-/// Large arrays in huge pages, as a ray's next read is a page fault of the TLB otherwise; and what a vector grows by is
-/// left as it is, to be written by many threads at once rather than zeroed by one.
+/// Large arrays in huge pages, as otherwise most reads of a ray miss the TLB; and what a vector grows by is left as it
+/// is, to be written by many threads at once rather than zeroed by one.
 template <class T>
 struct BulkAllocator {
     using value_type = T;

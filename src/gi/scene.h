@@ -64,7 +64,7 @@ class Scene {
                                                             double u) const {
         return light_sampler_.sample(kind, reference, u);
     }
-    /// Probability with which sample_light_source chooses this triangle of the light; 0 for the sky.
+    /// Probability with which sample_light_source chooses this triangle of the light; the sky's is number 0.
     float light_source_pdf(LightSampler::Kind kind, const vec3& reference, const Light* light,
                            uint32_t triangle) const {
         return light_sampler_.pmf(kind, reference, light, triangle);
