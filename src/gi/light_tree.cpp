@@ -1,7 +1,5 @@
 #include "gi/light_tree.h"
 
-#include <numeric>
-
 namespace etendue {
 
 namespace {
@@ -106,7 +104,8 @@ void LightTree::Node::set(uint32_t slot, const EmitterBounds& bounds) {
     axis_x[slot] = bounds.normals.axis.x, axis_y[slot] = bounds.normals.axis.y,
     axis_z[slot] = bounds.normals.axis.z;
     const float angle = std::min(bounds.normals.angle() + 1e-3f, PI);
-    cos_angle[slot] = std::cos(angle), sin_angle[slot] = std::sin(angle);
+    // Of pi the sine is rounded to below 0.
+    cos_angle[slot] = std::cos(angle), sin_angle[slot] = std::max(std::sin(angle), 0.f);
     power[slot] = bounds.power;
 }
 
@@ -153,53 +152,65 @@ uint32_t LightTree::build(std::span<const EmitterBounds> emitters, std::span<uin
     return index;
 }
 
-LightTree::Importances LightTree::importances(const Node& node, const vec3& reference) {
+inline LightTree::Importances LightTree::importances(const Node& node, const vec3& reference) {
     Importances out;
     for (uint32_t i = 0; i < WIDTH; ++i) {
         const float x = reference.x - node.x[i], y = reference.y - node.y[i], z = reference.z - node.z[i];
-        const float radius2 = node.radius[i] * node.radius[i];
-        const float distance2 = std::max(x * x + y * y + z * z, std::numeric_limits<float>::min());
-        const float inverse = 1 / std::sqrt(distance2);
-        // Half the angle under which the bounding sphere is seen.
-        const float sin_sphere = std::min(node.radius[i] * inverse, 1.f);
-        const float cos_sphere = std::sqrt(1 - sin_sphere * sin_sphere);
-        const float cos_axis =
-            std::clamp((node.axis_x[i] * x + node.axis_y[i] * y + node.axis_z[i] * z) * inverse, -1.f, 1.f);
-        const float sin_axis = std::sqrt(1 - cos_axis * cos_axis);
-        // What is left of the angle to the axis when the normals turn towards the reference as far as they may, and
-        // the emitter moves within the sphere.
-        const bool in_cone = cos_axis >= node.cos_angle[i];
-        const float cos_1 = in_cone ? 1 : cos_axis * node.cos_angle[i] + sin_axis * node.sin_angle[i];
-        const float sin_1 = in_cone ? 0 : sin_axis * node.cos_angle[i] - cos_axis * node.sin_angle[i];
-        const bool in_sphere = (cos_1 >= cos_sphere) | (distance2 <= radius2);
-        const float cos_2 = in_sphere ? 1 : cos_1 * cos_sphere + sin_1 * sin_sphere;
-        out[i] = node.power[i] * std::max(cos_2, 0.f) / std::max(distance2, radius2);
+        const float radius = node.radius[i], cos_cone = node.cos_angle[i], sin_cone = node.sin_angle[i];
+        const float distance2 = x * x + y * y + z * z;
+        const float outside = distance2 - radius * radius;
+        // All sines and cosines but the cone's are times the distance, which saves its root and the divisions by it.
+        const float cos_axis = node.axis_x[i] * x + node.axis_y[i] * y + node.axis_z[i] * z;
+        const float sin_axis = safe_sqrt(distance2 - cos_axis * cos_axis);
+        const float inverse2 =
+            1 / std::max(distance2, std::max(radius * radius, std::numeric_limits<float>::min()));
+        // Half the angle under which the bounding sphere is seen, and with the cone's beside it: as far may a normal
+        // turn towards the reference, and the emitter move within the sphere.
+        const float cos_sphere = safe_sqrt(outside);
+        const float cos_both = cos_cone * cos_sphere - sin_cone * radius;
+        const float sin_both = sin_cone * cos_sphere + cos_cone * radius;
+        // Where both are more than half a turn, too, which is as far as an axis can be turned away.
+        const bool may_face = (outside <= 0) | (sin_both <= 0) | (cos_axis >= cos_both);
+        const float cos_rest = std::max((cos_axis * cos_both + sin_axis * sin_both) * inverse2, 0.f);
+        out[i] = node.power[i] * inverse2 * (may_face ? 1 : cos_rest);
     }
     return out;
+}
+
+inline LightTree::Sums LightTree::sums_before(const Importances& importance) {
+    Sums before;
+    // First in fours, beside each other, as a sum waits for the one before.
+    before[0] = 0;
+    for (uint32_t four = 0; four < WIDTH; four += 4) {
+        before[four + 1] = importance[four];
+        for (uint32_t i = four + 1; i < four + 4; ++i) before[i + 1] = before[i] + importance[i];
+    }
+    for (uint32_t four = 4; four < WIDTH; four += 4) {
+        const double sum = before[four];
+        for (uint32_t i = four; i < four + 4; ++i) before[i + 1] += sum;
+    }
+    return before;
 }
 
 std::optional<LightTree::Choice> LightTree::sample(const vec3& reference, double u) const {
     if (nodes_.empty()) return std::nullopt;
     float pmf = 1;
-    for (uint32_t index = 0; !(index & LEAF);) {
+    for (uint32_t index = 0;;) {
         const Node& node = nodes_[index];
         const Importances importance = importances(node, reference);
-        const float total = std::accumulate(importance.begin(), importance.end(), 0.f);
+        const Sums before = sums_before(importance);
+        const auto total = static_cast<float>(before[WIDTH]);
         if (!may_choose(total)) return std::nullopt;
-        const double target = u * total;
-        double from = 0, chosen_from = 0;
+        // Below the last sum, as u is at most 1 - 2^-52: what is chosen has an importance.
+        const double target = u * before[WIDTH];
         uint32_t chosen = 0;
-        for (uint32_t slot = 0; slot < WIDTH && from <= target; ++slot) {
-            if (importance[slot] == 0) continue;
-            chosen = slot, chosen_from = from;
-            from += importance[slot];
-        }
+        // Without a branch, which would be guessed wrong every other time.
+        for (uint32_t slot = 1; slot < WIDTH; ++slot) chosen += before[slot] <= target;
         pmf *= importance[chosen] / total;
-        u = std::clamp((target - chosen_from) / importance[chosen], 0., 1 - 0x1p-53);
+        u = std::min((target - before[chosen]) / importance[chosen], 1 - 0x1p-52);
         index = node.child[chosen];
         if (index & LEAF) return Choice{index & ~LEAF, pmf, u};
     }
-    return std::nullopt;
 }
 
 float LightTree::pmf(const vec3& reference, uint32_t emitter) const {
@@ -209,7 +220,7 @@ float LightTree::pmf(const vec3& reference, uint32_t emitter) const {
     for (uint32_t depth = 0; depth < length; ++depth) {
         const Node& node = nodes_[index];
         const Importances importance = importances(node, reference);
-        const float total = std::accumulate(importance.begin(), importance.end(), 0.f);
+        const auto total = static_cast<float>(sums_before(importance)[WIDTH]);
         if (!may_choose(total)) return 0;
         const uint32_t slot = slots >> (BITS * depth) & (WIDTH - 1);
         pmf *= importance[slot] / total;

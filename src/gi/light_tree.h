@@ -48,7 +48,8 @@ class LightTree {
     LightTree() = default;
     explicit LightTree(std::span<const EmitterBounds> emitters);
 
-    /// Empty where no light of the emitters can arrive, or where the choice led to some of which none can.
+    /// Empty where no light of the emitters can arrive, or where the choice led to some of which none can. `u` is in
+    /// [0, 1 - 2^-52].
     std::optional<Choice> sample(const vec3& reference, double u) const;
     /// Probability with which `sample` chooses this emitter.
     float pmf(const vec3& reference, uint32_t emitter) const;
@@ -66,8 +67,12 @@ class LightTree {
         void set(uint32_t slot, const EmitterBounds& bounds);
     };
     using Importances = std::array<float, WIDTH>;
+    // In double, as what is chosen rarely must be so as often as it says.
+    using Sums = std::array<double, WIDTH + 1>;
 
     static Importances importances(const Node& node, const vec3& reference);
+    /// Of all slots before each, and of all.
+    static Sums sums_before(const Importances& importance);
     uint32_t build(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices, uint64_t path,
                    uint32_t depth);
 
