@@ -4,6 +4,9 @@ namespace etendue {
 
 namespace {
 
+// From this depth on parts are halved: a way of 16 steps, as many as fit its 64 bits, then leads to any of 2^31 emitters.
+constexpr uint32_t DEEP = 8;
+
 /// Whether a node has something to choose, of a brightness that numbers can tell.
 bool may_choose(float total) { return total > 0 && total < INFINITE; }
 
@@ -39,9 +42,8 @@ struct Part {
 };
 
 /// Cuts across the longest side of where the emitters are, at the place of least cost among a few, and returns how many
-/// of the indices are then before it. Deep down in halves, so that the tree has an end.
+/// of the indices are then before it.
 size_t cut(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices, uint32_t depth) {
-    constexpr uint32_t DEEP = 10;
     constexpr int BUCKETS = 12;
     vec3 lower(INFINITE), upper(-INFINITE);
     for (const uint32_t i : indices) {
@@ -50,7 +52,7 @@ size_t cut(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices,
     }
     const vec3 size = upper - lower;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    if (size[axis] <= 0 || depth > DEEP) return indices.size() / 2;
+    if (size[axis] <= 0 || depth >= DEEP) return indices.size() / 2;
     const auto bucket_of = [&](uint32_t i) {
         const float at = (emitters[i].centre()[axis] - lower[axis]) / size[axis];
         return std::min(static_cast<int>(at * BUCKETS), BUCKETS - 1);
@@ -123,16 +125,21 @@ uint32_t LightTree::build(std::span<const EmitterBounds> emitters, std::span<uin
     if (indices.size() <= WIDTH) {
         for (size_t i = 0; i < indices.size(); ++i) parts.emplace_back(emitters, indices.subspan(i, 1));
     } else {
-        // The costliest part is cut again, until there are as many as a node holds.
+        // The costliest part is cut again, until there are as many as a node holds. What fits into a node of its own
+        // stays whole, or most nodes would be half empty. Deep down the largest one, so that the tree has an end.
         parts.emplace_back(emitters, indices);
         while (parts.size() < WIDTH) {
-            const auto costliest = std::ranges::max_element(parts, {}, [](const Part& part) {
-                return part.indices.size() == 1 ? -1 : cost(part.bounds);
+            const auto costliest = std::ranges::max_element(parts, {}, [&](const Part& part) {
+                const size_t size = part.indices.size();
+                return size <= WIDTH ? -1 : depth >= DEEP ? static_cast<float>(size) : cost(part.bounds);
             });
+            if (costliest->indices.size() <= WIDTH) break;
             const std::span<uint32_t> whole = costliest->indices;
             const size_t before = cut(emitters, whole, depth);
             *costliest = {emitters, whole.first(before)};
-            parts.emplace_back(emitters, whole.subspan(before));
+            // Beside each other, so that emitters near each other are so in the order in which `u` chooses them, too: numbers
+            // that are well spread then choose emitters that are.
+            parts.emplace(costliest + 1, emitters, whole.subspan(before));
         }
     }
     const auto index = static_cast<uint32_t>(nodes_.size());

@@ -55,7 +55,7 @@ class LightTree {
     float pmf(const vec3& reference, uint32_t emitter) const;
 
   private:
-    static constexpr uint32_t WIDTH = 8, BITS = 3;
+    static constexpr uint32_t WIDTH = 16, BITS = 4;
     static constexpr uint32_t LEAF = 1u << 31;
     /// The nodes or emitters below a node, side by side, so that vector instructions look at all of them at once.
     struct alignas(64) Node {
