@@ -21,18 +21,15 @@ std::shared_ptr<Texture> make_texture(const nb::ndarray<nb::c_contig, nb::device
     const size_t height = pixels.shape(0), width = pixels.shape(1), channels = pixels.shape(2);
     if (channels != 1 && channels != 3 && channels != 4)
         throw std::invalid_argument("a texture has 1, 3 or 4 channels");
-    const size_t size = height * width * channels;
-    std::variant<std::vector<uint8_t>, std::vector<float>> data;
+    std::variant<const uint8_t*, const float*> data;
     if (pixels.dtype() == nb::dtype<uint8_t>()) {
-        const auto* const begin = static_cast<const uint8_t*>(pixels.data());
-        data = std::vector<uint8_t>(begin, begin + size);
+        data = static_cast<const uint8_t*>(pixels.data());
     } else if (pixels.dtype() == nb::dtype<float>()) {
-        const auto* const begin = static_cast<const float*>(pixels.data());
-        data = std::vector<float>(begin, begin + size);
+        data = static_cast<const float*>(pixels.data());
     } else {
         throw std::invalid_argument("a texture is of uint8 or float32");
     }
-    return std::make_shared<Texture>(width, height, channels, std::move(data), srgb);
+    return std::make_shared<Texture>(width, height, channels, data, srgb);
 }
 
 /// A material whose textures are still indices.

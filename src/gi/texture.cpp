@@ -1,7 +1,5 @@
 #include "gi/texture.h"
 
-#include <array>
-
 namespace etendue {
 
 namespace {
@@ -16,68 +14,104 @@ const std::array<float, 256> SRGB_TO_LINEAR = [] {
     return table;
 }();
 
+const std::array<float, 256> UNDECODED = [] {
+    std::array<float, 256> table{};
+    for (int i = 0; i < 256; ++i) table[i] = static_cast<float>(i) / 255;
+    return table;
+}();
+
+float value(uint8_t code, const std::array<float, 256>& codes) { return codes[code]; }
+float value(float linear, const std::array<float, 256>&) { return linear; }
+
+vec3 colour_of(const auto& pixel, const std::array<float, 256>& codes) {
+    if constexpr (std::tuple_size_v<std::decay_t<decltype(pixel)>> == 1)
+        return vec3(value(pixel[0], codes));
+    else
+        return {value(pixel[0], codes), value(pixel[1], codes), value(pixel[2], codes)};
+}
+
 // Into [0, 1); a coordinate that is not a number reads the corner rather than memory outside.
 float wrapped(float t) {
     const float fraction = t - std::floor(t);
     return fraction >= 0 && fraction < 1 ? fraction : 0.f;
 }
 
+/// Two pixels side by side, or one above the other, and the share of the second.
+struct Neighbours {
+    uint32_t first, second;
+    float share;
+
+    /// At a coordinate in [0, 1) of `size` pixels that repeat.
+    Neighbours(float t, uint32_t size) {
+        const float place = t * static_cast<float>(size) - 0.5f, floor = std::floor(place);
+        // As unsigned, -1 is beyond the last as well.
+        first = std::min(static_cast<uint32_t>(static_cast<int32_t>(floor)), size - 1);
+        second = first + 1 == size ? 0 : first + 1;
+        share = place - floor;
+    }
+};
+
 }  // namespace
 
+template <class Value, uint32_t CHANNELS>
+Texture::Tiles<Value, CHANNELS>::Tiles(uint32_t width, uint32_t height, uint32_t channels,
+                                       const Value* pixels)
+    : across((width + SIDE - 1) / SIDE) {
+    tiles.resize(size_t{across} * ((height + SIDE - 1) / SIDE));
+    for (uint32_t y = 0; y < height; ++y) {
+        Tile* const row = &tiles[size_t{y / SIDE} * across];
+        for (uint32_t x = 0; x < width; ++x, pixels += channels) {
+            Pixel& pixel = row[x / SIDE].pixels[y % SIDE * SIDE + x % SIDE];
+            if constexpr (CHANNELS == 1)
+                pixel = {pixels[0]};
+            else
+                pixel = {pixels[0], pixels[1], pixels[2], pixels[channels - 1]};
+        }
+    }
+}
+
+Texture::Image Texture::tiled(uint32_t width, uint32_t height, uint32_t channels,
+                              std::variant<const uint8_t*, const float*> pixels) {
+    return std::visit(
+        [&]<class Value>(const Value* values) -> Image {
+            if (channels == 1) return Tiles<Value, 1>(width, height, channels, values);
+            return Tiles<Value, 4>(width, height, channels, values);
+        },
+        pixels);
+}
+
 Texture::Texture(uint32_t width, uint32_t height, uint32_t channels,
-                 std::variant<std::vector<uint8_t>, std::vector<float>> data, bool srgb)
+                 std::variant<const uint8_t*, const float*> pixels, bool srgb)
     : width_(width),
       height_(height),
-      channels_(channels),
       opacity_channel_(channels == 4 ? 3 : 0),
-      data_(std::move(data)),
-      srgb_(srgb) {}
+      image_(tiled(width, height, channels, pixels)),
+      codes_(srgb ? &SRGB_TO_LINEAR : &UNDECODED) {}
 
-template <class Value, class Fetch>
-Value Texture::filtered(const vec2& uv, Fetch&& fetch) const {
-    const float x = wrapped(uv.x) * static_cast<float>(width_) - 0.5f;
-    const float y = wrapped(1 - uv.y) * static_cast<float>(height_) - 0.5f;
-    const float x_floor = std::floor(x), y_floor = std::floor(y);
-    const float fx = x - x_floor, fy = y - y_floor;
-    const uint32_t x0 = (static_cast<int32_t>(x_floor) + width_) % width_, x1 = x0 + 1 == width_ ? 0 : x0 + 1;
-    const uint32_t y0 = (static_cast<int32_t>(y_floor) + height_) % height_,
-                   y1 = y0 + 1 == height_ ? 0 : y0 + 1;
-    const size_t row0 = size_t{y0} * width_, row1 = size_t{y1} * width_;
-    const Value top = (1 - fx) * fetch(row0 + x0) + fx * fetch(row0 + x1);
-    const Value bottom = (1 - fx) * fetch(row1 + x0) + fx * fetch(row1 + x1);
-    return (1 - fy) * top + fy * bottom;
+template <class Fetch>
+auto Texture::filtered(const vec2& uv, const Fetch& fetch) const {
+    const Neighbours x(wrapped(uv.x), width_), y(wrapped(1 - uv.y), height_);
+    return std::visit(
+        [&](const auto& image) {
+            const auto row = [&](uint32_t line) {
+                return (1 - x.share) * fetch(image.at(x.first, line)) +
+                       x.share * fetch(image.at(x.second, line));
+            };
+            return (1 - y.share) * row(y.first) + y.share * row(y.second);
+        },
+        image_);
 }
 
 vec3 Texture::colour(const vec2& uv) const {
-    return filtered<vec3>(uv, [this](size_t i) { return colour_texel(i); });
+    return filtered(uv, [&codes = *codes_](const auto& pixel) { return colour_of(pixel, codes); });
 }
 
 float Texture::opacity(const vec2& uv) const {
-    return filtered<float>(uv, [this](size_t i) { return raw_texel(i, opacity_channel_); });
-}
-
-float Texture::raw_texel(size_t pixel, uint32_t channel) const {
-    const size_t i = pixel * channels_ + channel;
-    if (const auto* bytes = std::get_if<0>(&data_)) return static_cast<float>((*bytes)[i]) / 255;
-    return std::get<1>(data_)[i];
-}
-
-vec3 Texture::colour_texel(size_t pixel) const {
-    const size_t r = pixel * channels_, g = channels_ < 3 ? r : r + 1, b = channels_ < 3 ? r : r + 2;
-    if (const auto* bytes = std::get_if<0>(&data_)) {
-        const uint8_t* const c = bytes->data();
-        if (srgb_) return {SRGB_TO_LINEAR[c[r]], SRGB_TO_LINEAR[c[g]], SRGB_TO_LINEAR[c[b]]};
-        return vec3(c[r], c[g], c[b]) / 255.f;
-    }
-    const float* const c = std::get<1>(data_).data();
-    return {c[r], c[g], c[b]};
+    return filtered(uv, [this](const auto& pixel) { return value(pixel[opacity_channel_], UNDECODED); });
 }
 
 vec3 Texture::normal(const vec2& uv) const {
-    const vec3 raw = filtered<vec3>(uv, [this](size_t i) {
-        return vec3(raw_texel(i, 0), raw_texel(i, channels_ < 3 ? 0 : 1),
-                    raw_texel(i, channels_ < 3 ? 0 : 2));
-    });
+    const vec3 raw = filtered(uv, [](const auto& pixel) { return colour_of(pixel, UNDECODED); });
     const vec3 n = 2.f * raw - 1.f;
     // A map that points into the surface, or nowhere, says nothing about it.
     return n.z > 0 ? glm::normalize(n) : vec3(0, 0, 1);
@@ -85,13 +119,17 @@ vec3 Texture::normal(const vec2& uv) const {
 
 vec3 Texture::mean_colour() const {
     glm::dvec3 sum(0);
-    const size_t pixels = size_t{width_} * height_;
-    for (size_t i = 0; i < pixels; ++i) sum += glm::dvec3(colour_texel(i));
-    return vec3(sum / static_cast<double>(pixels));
+    std::visit(
+        [&](const auto& image) {
+            for (uint32_t y = 0; y < height_; ++y)
+                for (uint32_t x = 0; x < width_; ++x) sum += glm::dvec3(colour_of(image.at(x, y), *codes_));
+        },
+        image_);
+    return vec3(sum / (static_cast<double>(width_) * height_));
 }
 
 size_t Texture::memory_bytes() const {
-    return size_t{width_} * height_ * channels_ * (data_.index() == 0 ? sizeof(uint8_t) : sizeof(float));
+    return std::visit([](const auto& image) { return image.tiles.size() * sizeof(image.tiles[0]); }, image_);
 }
 
 }  // namespace etendue

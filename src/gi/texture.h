@@ -1,10 +1,12 @@
 // Images on surfaces: bilinear, repeating; 8-bit sRGB stays 8-bit in memory.
 #pragma once
 
+#include <array>
 #include <variant>
 #include <vector>
 
 #include "gi/math.h"
+#include "gi/memory.h"
 
 namespace etendue {
 
@@ -13,7 +15,7 @@ class Texture {
     /// Rows from the top, `channels` values a pixel (1, 3 or 4). 8-bit values are sRGB where `srgb`, else
     /// linear / 255; floats are linear.
     Texture(uint32_t width, uint32_t height, uint32_t channels,
-            std::variant<std::vector<uint8_t>, std::vector<float>> data, bool srgb);
+            std::variant<const uint8_t*, const float*> pixels, bool srgb);
 
     /// Linear colour at uv, v = 0 at the bottom.
     vec3 colour(const vec2& uv) const;
@@ -30,14 +32,38 @@ class Texture {
     size_t memory_bytes() const;
 
   private:
-    template <class Value, class Fetch>
-    Value filtered(const vec2& uv, Fetch&& fetch) const;
-    float raw_texel(size_t pixel, uint32_t channel) const;
-    vec3 colour_texel(size_t pixel) const;
+    /// The linear value of each of the 256 codes of a byte.
+    using Codes = std::array<float, 256>;
 
-    uint32_t width_, height_, channels_, opacity_channel_;
-    std::variant<std::vector<uint8_t>, std::vector<float>> data_;
-    bool srgb_;
+    /// Pixels in square tiles that fill a line of the cache each: the four of a lookup mostly lie in one. Three
+    /// channels take the room of four.
+    template <class Value, uint32_t CHANNELS>
+    struct Tiles {
+        using Pixel = std::array<Value, CHANNELS>;
+        static constexpr uint32_t LINE = 64, SIDE = sizeof(Pixel) == 1 ? 8 : sizeof(Pixel) == 4 ? 4 : 2;
+        static_assert(SIDE * SIDE * sizeof(Pixel) == LINE);
+        struct alignas(LINE) Tile {
+            std::array<Pixel, size_t{SIDE} * SIDE> pixels;
+        };
+
+        uint32_t across;  // tiles side by side
+        std::vector<Tile, BulkAllocator<Tile>> tiles;
+
+        Tiles(uint32_t width, uint32_t height, uint32_t channels, const Value* pixels);
+        const Pixel& at(uint32_t x, uint32_t y) const {
+            return tiles[size_t{y / SIDE} * across + x / SIDE].pixels[y % SIDE * SIDE + x % SIDE];
+        }
+    };
+    using Image = std::variant<Tiles<uint8_t, 1>, Tiles<uint8_t, 4>, Tiles<float, 1>, Tiles<float, 4>>;
+
+    static Image tiled(uint32_t width, uint32_t height, uint32_t channels,
+                       std::variant<const uint8_t*, const float*> pixels);
+    template <class Fetch>
+    auto filtered(const vec2& uv, const Fetch& fetch) const;
+
+    uint32_t width_, height_, opacity_channel_;
+    Image image_;
+    const Codes* codes_;  // of colours
 };
 
 }  // namespace etendue
