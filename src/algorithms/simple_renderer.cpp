@@ -14,7 +14,7 @@ class SimpleRenderer : public Algorithm {
         const SurfaceHit hit = context.intersect(ray);
         if (!hit.valid) return hit.Le();
         if (hit.material->emits() && hit.front) return hit.material->albedo_at(hit.uv());
-        return hit.surface.albedo * std::abs(glm::dot(hit.wo, hit.frame.n));
+        return hit.surface().albedo * std::abs(glm::dot(hit.wo, hit.frame.n));
     }
 };
 

@@ -68,7 +68,7 @@ void bind_replay(nb::module_& m) {
                          return v.hit.material ? std::string(bsdfs()[v.hit.material->bsdf].name)
                                                : std::string();
                      })
-        .def_prop_ro("albedo", [](const PathVertex& v) { return from_vec3(v.hit.surface.albedo); })
+        .def_prop_ro("albedo", [](const PathVertex& v) { return from_vec3(v.hit.surface().albedo); })
         .def_prop_ro(
             "emitted", [](const PathVertex& v) { return from_vec3(v.hit.Le()); },
             "(3,): radiance that shines from here along the ray.")

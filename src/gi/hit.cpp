@@ -39,17 +39,26 @@ SurfaceHit::SurfaceHit(const Ray& ray, float distance, const Mesh& mesh, uint32_
       mesh(&mesh),
       triangle(triangle),
       barycentrics(b) {
+    if (material.albedo_texture) {
+        colour_texture_ = material.albedo_texture;
+        colour_texture_->prefetch(uv());
+    }
     front = glm::dot(point.normal, wo) > 0;
     if (!front) point.normal = -point.normal;
     const bool is_flat = !mesh.facets[triangle].smooth && !material.normal_texture;
     frame = Frame(is_flat ? point.normal : shading_normal());
     wo_local = frame.to_local(wo);
-    surface.albedo = material.albedo_texture ? material.albedo_texture->colour(uv()) : material.albedo;
-    surface.ior = material.ior;
-    surface.roughness = material.roughness;
-    surface.absorb = material.absorb;
-    surface.coated = material.coated;
-    surface.front = front;
+    surface_.albedo = material.albedo;
+    surface_.ior = material.ior;
+    surface_.roughness = material.roughness;
+    surface_.absorb = material.absorb;
+    surface_.coated = material.coated;
+    surface_.front = front;
+}
+
+void SurfaceHit::read_colour() const {
+    surface_.albedo = colour_texture_->colour(uv());
+    colour_texture_ = nullptr;
 }
 
 vec3 SurfaceHit::shading_normal() const {
@@ -83,18 +92,18 @@ vec3 SurfaceHit::Le() const {
 vec3 SurfaceHit::f(const vec3& wi) const {
     const vec3 local = frame.to_local(wi);
     if ((local.z > 0) != (glm::dot(wi, point.normal) > 0)) return vec3(0);
-    return bsdf_f(material->bsdf, surface, wo_local, local);
+    return bsdf_f(material->bsdf, surface(), wo_local, local);
 }
 
 float SurfaceHit::pdf(const vec3& wi) const {
     const vec3 local = frame.to_local(wi);
     if ((local.z > 0) != (glm::dot(wi, point.normal) > 0)) return 0;
-    return bsdf_pdf(material->bsdf, surface, wo_local, local);
+    return bsdf_pdf(material->bsdf, surface(), wo_local, local);
 }
 
 std::optional<BsdfSample> SurfaceHit::sample(float lobe, const vec2& u) const {
     // One variable is what every path returns, so that it is never copied.
-    auto sample = bsdf_sample(material->bsdf, surface, wo_local, lobe, u);
+    auto sample = bsdf_sample(material->bsdf, surface(), wo_local, lobe, u);
     if (!sample) return sample;
     const bool above = sample->wi.z > 0;
     sample->wi = frame.to_world(sample->wi);

@@ -21,7 +21,6 @@ struct SurfaceHit {
     float distance = INFINITE;  // from the ray's origin
     SurfacePoint point;         // its normal is geometric and on the side of wo
     Frame frame;                // around the shading normal, on the side of wo
-    Surface surface;
     const Material* material = nullptr;
     const Light* light = nullptr;
     vec3 wo_local{0, 0, 1};  // wo in `frame`
@@ -46,8 +45,14 @@ struct SurfaceHit {
     /// Radiance emitted towards wo.
     vec3 Le() const;
 
+    /// What the BSDF sees, the texel of its colour included.
+    const Surface& surface() const {
+        if (colour_texture_) read_colour();
+        return surface_;
+    }
+
     /// The BSDF's, see there.
-    vec3 albedo() const { return bsdf_albedo(material->bsdf, surface); }
+    vec3 albedo() const { return bsdf_albedo(material->bsdf, surface()); }
 
     // The BSDF in world directions.  A direction that is above the surface for one of the shading and the
     // geometric normal, and below for the other, carries no light: f, pdf and sample agree on that.
@@ -61,6 +66,12 @@ struct SurfaceHit {
   private:
     /// On the side of wo.
     vec3 shading_normal() const;
+    void read_colour() const;
+
+    // The texture is asked for the colour when the hit is made, and read when the BSDF is first needed: by then, after
+    // a light has been chosen, it has come from memory.
+    mutable Surface surface_;
+    mutable const Texture* colour_texture_ = nullptr;  // null: the colour is known
 };
 
 }  // namespace etendue

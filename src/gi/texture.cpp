@@ -106,6 +106,16 @@ vec3 Texture::colour(const vec2& uv) const {
     return filtered(uv, [&codes = *codes_](const auto& pixel) { return colour_of(pixel, codes); });
 }
 
+void Texture::prefetch(const vec2& uv) const {
+    const Neighbours x(wrapped(uv.x), width_), y(wrapped(1 - uv.y), height_);
+    std::visit(
+        [&](const auto& image) {
+            for (const uint32_t line : {y.first, y.second})
+                for (const uint32_t column : {x.first, x.second}) __builtin_prefetch(&image.at(column, line));
+        },
+        image_);
+}
+
 float Texture::opacity(const vec2& uv) const {
     return filtered(uv, [this](const auto& pixel) { return value(pixel[opacity_channel_], UNDECODED); });
 }

@@ -20,6 +20,9 @@ class Texture {
     /// Linear colour at uv, v = 0 at the bottom.
     vec3 colour(const vec2& uv) const;
 
+    /// Asks for the pixels that a lookup at uv reads.
+    void prefetch(const vec2& uv) const;
+
     /// Opacity at uv: the alpha channel where there is one, else the first channel, undecoded.
     float opacity(const vec2& uv) const;
 
