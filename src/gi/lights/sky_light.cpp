@@ -67,7 +67,8 @@ SkyLight::SkyLight(const Sky& sky, float scene_radius) : sky_(&sky) {
 
 const vec3& SkyLight::pixel(int32_t x, int32_t y) const {
     const auto w = static_cast<int32_t>(sky_->width), h = static_cast<int32_t>(sky_->height);
-    return sky_->pixels[size_t(std::clamp(y, 0, h - 1)) * w + (x + w) % w];
+    const int32_t around = x < 0 ? w - 1 : x >= w ? 0 : x;
+    return sky_->pixels[size_t(std::clamp(y, 0, h - 1)) * w + around];
 }
 
 vec3 SkyLight::Le(const vec3& direction) const {
