@@ -44,7 +44,7 @@ class Texture {
     struct Tiles {
         using Pixel = std::array<Value, CHANNELS>;
         static constexpr uint32_t LINE = 64, SIDE = sizeof(Pixel) == 1 ? 8 : sizeof(Pixel) == 4 ? 4 : 2;
-        static_assert(SIDE * SIDE * sizeof(Pixel) == LINE);
+        static_assert(size_t{SIDE} * SIDE * sizeof(Pixel) == LINE);
         struct alignas(LINE) Tile {
             std::array<Pixel, size_t{SIDE} * SIDE> pixels;
         };

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -16,8 +18,8 @@ UVS = CORNERS[:, :2] * 3.5 - 1.25  # over several repetitions of the image
 
 
 def looked_at(
-    pixels: NDArray[np.generic], srgb: bool, slot: str, towards: tuple[float, float, float] = (0, 0, -1)
-) -> tuple[_core.Scene, NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+    pixels: NDArray[Any], srgb: bool, slot: str, towards: tuple[float, float, float] = (0, 0, -1)
+) -> tuple[_core.Scene, NDArray[Any], NDArray[Any], NDArray[Any]]:
     """A shining square with this texture, and 500 rays that look at it: origins, directions, uvs."""
     material = _core.Material("m", "diffuse", emissive_strength=1.0, **{slot: 0})
     square = _core.Mesh(CORNERS, np.uint32([(0, 1, 2), (0, 2, 3)]), None, UVS)
@@ -28,12 +30,12 @@ def looked_at(
     return scene, origins, directions, UVS[0] + places * (UVS[2] - UVS[0])
 
 
-def image(size: tuple[int, int], channels: int, kind: str) -> NDArray[np.generic]:
+def image(size: tuple[int, int], channels: int, kind: str) -> NDArray[Any]:
     random = np.random.default_rng(size).random((*size, channels))
     return (random * 255).astype(np.uint8) if kind == "uint8" else random.astype(np.float32)
 
 
-def bilinear(pixels: NDArray[np.float64], uv: NDArray[np.float32]) -> NDArray[np.float64]:
+def bilinear(pixels: NDArray[Any], uv: NDArray[Any]) -> NDArray[Any]:
     """At uv, v = 0 at the bottom; the image repeats."""
     height, width = pixels.shape[:2]
     x, y = uv[:, 0] * float(width) - 0.5, (1 - uv[:, 1].astype(float)) * height - 0.5
@@ -45,7 +47,7 @@ def bilinear(pixels: NDArray[np.float64], uv: NDArray[np.float32]) -> NDArray[np
     return found
 
 
-def undecoded(pixels: NDArray[np.generic]) -> NDArray[np.float64]:
+def undecoded(pixels: NDArray[Any]) -> NDArray[Any]:
     return pixels / 255 if pixels.dtype == np.uint8 else pixels.astype(float)
 
 
