@@ -190,26 +190,26 @@ class Scene:
     def lights(self) -> list[Light]:
         """All lights, area lights in the order of their meshes."""
 
-    def sample_light_source(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], light_choice: str = 'tree') -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
+    def sample_light_source(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], light_choice: str = 'tree', learned: LightFactors | None = None) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
         """
         reference: float32 (n, 3). u: float32 (n,) in [0, 1) -> index of the light chosen there and of the triangle of its
         mesh, int32 (n,), -1 where there is none to choose, and the probability of that choice (n,).
         """
 
-    def sample_light(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True) -> dict:
+    def sample_light(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True, learned: LightFactors | None = None) -> dict:
         """
         reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). One light sample each, as next event estimation draws it:
         a dict of index (n,) int32 of the light, -1 where it failed, wi (n, 3), radiance (n, 3), position (n, 3) on the light and
         pdf (n,), the choice of the light included. Occlusion is not looked at.
         """
 
-    def light_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
+    def light_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True, learned: LightFactors | None = None) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
         """
         float32 (n, 3), (n, 3) -> index (n,) int32 of the light that each ray finds, -1 for none, and (n,): density of
         `sample_light` at wi.
         """
 
-    def light_source_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], index: int, triangle: int = 0, light_choice: str = 'tree') -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+    def light_source_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], index: int, triangle: int = 0, light_choice: str = 'tree', learned: LightFactors | None = None) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
         """
         float32 (n, 3) -> (n,): probability with which sample_light_source chooses this triangle of this light there.
         """
@@ -306,6 +306,42 @@ class Light:
     def Le(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None, 3))]:
         """
         float32 (n, 3), (n, 3) -> (n, 3): radiance of this light seen from there, 0 where something else is in front.
+        """
+
+class LightFactors:
+    """
+    What was learned about the lights of a region of a scene: what the importances of the light tree's first two levels
+    are multiplied by.
+    """
+
+    def __init__(self, triangles_share: float, root: Sequence[float], below: Sequence[Sequence[float]]) -> None:
+        """
+        triangles_share: probability of choosing a triangle rather than another light, 1 without others. root: 16 numbers,
+        for the slots of the root. below: 16 of 16, for the slots of what is below each. Raises ValueError unless all are > 0.
+        """
+
+    @property
+    def triangles_share(self) -> float: ...
+
+    @property
+    def root(self) -> list[float]: ...
+
+    @property
+    def below(self) -> list[list[float]]: ...
+
+class LightGuide:
+    """
+    Where light does arrive from, region by region (`light_choice`: learned).
+    """
+
+    def __init__(self, scene: Scene, camera: Camera, max_edges: int = 10, threads: int = 0) -> None:
+        """
+        Learns from paths of that camera, as a render does before its first sample.
+        """
+
+    def at(self, position: Sequence[float], normal: Sequence[float]) -> LightFactors:
+        """
+        The LightFactors for a point and its unit normal; None where nothing is known.
         """
 
 def light_sampling_weight(mis: str, light_pdf: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)], bsdf_pdf: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:

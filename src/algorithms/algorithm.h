@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "algorithms/observer.h"
+#include "gi/camera.h"
 #include "gi/sampler.h"
 #include "gi/scene.h"
 
@@ -89,9 +90,21 @@ class Context {
     Observer* observer_;
 };
 
+/// What an estimator may look at before it is asked for anything.
+struct Preparation {
+    const Scene& scene;
+    const Camera& camera;
+    /// Calls work(i) for i from 0 to before `count` on all threads. False where it was cut short.
+    std::function<bool(uint32_t count, const std::function<void(uint32_t)>& work)> for_each;
+};
+
 class Algorithm {
   public:
     virtual ~Algorithm() = default;
+    /// Called once, before all that is below; again where it returned false, which it does where it was cut short.
+    /// What it learns must depend on the scene, the camera and the parameters alone, and on no random number that an
+    /// estimate uses: no estimate would be unbiased otherwise, nor come out the same again.
+    virtual bool prepare(const Preparation&) { return true; }
     /// One unbiased estimate of the radiance along a camera ray. Called by many threads at once.
     virtual vec3 radiance(Context& context, Ray ray) const = 0;
 };

@@ -12,8 +12,11 @@ namespace {
 class DirectIllumination : public Algorithm {
   public:
     explicit DirectIllumination(const Parameters& parameters)
-        : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")),
-          light_choice_(light_choice_of(parameters)) {}
+        : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")), light_choice_(parameters) {}
+
+    bool prepare(const Preparation& preparation) override {
+        return light_choice_.prepare(preparation, MAX_CAM_PATH_LENGTH);
+    }
 
     vec3 radiance(Context& context, Ray ray) const override {
         const SurfaceHit hit = context.intersect(ray);
@@ -22,7 +25,8 @@ class DirectIllumination : public Algorithm {
 
         context.sampler.start_vertex(1);
         if (!hit.is_type(BRDF_SPECULAR)) {
-            return emitted + sample_direct_light(context, hit, vec3(1), 2, light_choice_, Mis::none);
+            return emitted + sample_direct_light(context, hit, vec3(1), 2, light_choice_.kind(),
+                                                 light_choice_.learned(hit), Mis::none);
         }
         const auto bounce = context.bounce(hit);
         if (!bounce) return emitted;
@@ -32,12 +36,12 @@ class DirectIllumination : public Algorithm {
 
   private:
     const int MAX_CAM_PATH_LENGTH;
-    const LightSampler::Kind light_choice_;
+    LightChoice light_choice_;
 };
 
 const Register<DirectIllumination> registered{"DirectIllumination",
                                               "direct light by light sampling, paths of at most two edges",
-                                              {max_path_length_parameter(), light_choice_parameter()},
+                                              {max_path_length_parameter(), LightChoice::parameter()},
                                               AlgorithmInfo::DIRECT};
 
 }  // namespace

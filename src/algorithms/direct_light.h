@@ -3,6 +3,7 @@
 #pragma once
 
 #include "algorithms/algorithm.h"
+#include "algorithms/light_guide.h"
 
 namespace etendue {
 
@@ -23,19 +24,41 @@ inline Parameter mis_parameter() {
             {"power", "balance", "none"}};
 }
 
-inline LightSampler::Kind light_choice_of(const Parameters& parameters) {
-    return parameters.get<std::string>("light_choice") == "tree" ? LightSampler::Kind::tree
-                                                                 : LightSampler::Kind::power;
-}
+/// How an estimator chooses its lights.
+class LightChoice {
+  public:
+    explicit LightChoice(const Parameters& parameters)
+        : kind_(parameters.get<std::string>("light_choice") == "power" ? LightSampler::Kind::power
+                                                                       : LightSampler::Kind::tree),
+          learns_(parameters.get<std::string>("light_choice") == "learned") {}
 
-inline Parameter light_choice_parameter() {
-    return {"light_choice",
-            "how a light is chosen; tree: by how much of its light could arrive; power: by its power alone",
-            std::string("tree"),
+    static Parameter parameter() {
+        return {
+            "light_choice",
+            "how a light is chosen; learned: by how much of its light does arrive, which a moment of tracing "
+            "tells before; tree: by how much could arrive; power: by its power alone",
+            std::string("learned"),
             0,
             0,
-            {LightSampler::names.begin(), LightSampler::names.end()}};
-}
+            {"learned", "tree", "power"}};
+    }
+
+    /// See Algorithm::prepare.
+    bool prepare(const Preparation& preparation, int max_edges) {
+        return !learns_ || guide_.learn(preparation, max_edges);
+    }
+
+    LightSampler::Kind kind() const { return kind_; }
+    /// What is known of the region of a vertex; null: no more than what the scene itself knows.
+    const LightFactors* learned(const SurfaceHit& hit) const {
+        return guide_.at(hit.point.position, hit.frame.n);
+    }
+
+  private:
+    LightSampler::Kind kind_;
+    bool learns_;
+    LightGuide guide_;
+};
 
 /// Weight of light sampling for a light sample: 1 without MIS.
 inline float light_sampling_weight(Mis mis, float light_pdf, float bsdf_pdf) {
@@ -64,30 +87,47 @@ inline float bsdf_sampling_weight(Mis mis, float bsdf_pdf, float light_pdf) {
     return 1;
 }
 
-/// The light of one sampled light over one shadow ray, weighted, at the end of a path of `edges` rays with the
-/// throughput of its vertex; 0 at delta surfaces, where it could never be seen.
-inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, const vec3& throughput, int edges,
-                                LightSampler::Kind light_choice, Mis mis) {
-    if (hit.is_type(BRDF_SPECULAR)) return vec3(0);
+/// A light chosen for a vertex, and the numbers that are left for a place on it.
+struct ChosenLight {
+    LightSampler::Choice choice;
+    vec2 u;
+};
+
+inline std::optional<ChosenLight> choose_light(Context& context, const SurfaceHit& hit,
+                                               LightSampler::Kind kind, const LightFactors* learned) {
     const double finer_digits = context.sampler.next_1d();
-    vec2 u = context.sampler.next_2d();
+    const vec2 u = context.sampler.next_2d();
     // One number chooses the light and the place along it, so that samples which are stratified over [0, 1) are so over
     // each light too. What of its digits the choice uses up, others make up for.
-    const vec3& reference = hit.point.position;
     const auto choice =
-        context.scene.sample_light_source(light_choice, reference, u.x + finer_digits * 0x1p-24);
-    if (!choice) return vec3(0);
-    u.x = choice->remapped;
-    const auto sample = choice->light->sample_Li(reference, choice->triangle, u, mis != Mis::none);
+        context.scene.sample_light_source(kind, hit.point.position, u.x + finer_digits * 0x1p-24, learned);
+    if (!choice) return std::nullopt;
+    return ChosenLight{*choice, {choice->remapped, u.y}};
+}
+
+/// What that light brings over one shadow ray, weighted, at the end of a path of `edges` rays with the throughput of
+/// its vertex.
+inline vec3 light_from(Context& context, const SurfaceHit& hit, const ChosenLight& chosen,
+                       const vec3& throughput, int edges, Mis mis) {
+    const auto& [choice, u] = chosen;
+    const auto sample = choice.light->sample_Li(hit.point.position, choice.triangle, u, mis != Mis::none);
     if (!sample) return vec3(0);
     const vec3 reflected = hit.f(sample->wi) * std::abs(glm::dot(sample->wi, hit.frame.n)) * sample->radiance;
     if (is_black(reflected) || !context.visible(hit, *sample)) return vec3(0);
     Contribution found{Technique::light_sampling, edges};
-    found.pdf = choice->pmf * sample->pdf;
+    found.pdf = choice.pmf * sample->pdf;
     found.other_pdf = hit.pdf(sample->wi);
     found.weight = light_sampling_weight(mis, found.pdf, found.other_pdf);
     found.unweighted = throughput * reflected / found.pdf;
     return context.light(found);
+}
+
+/// Both; 0 at delta surfaces, where a sampled light could never be seen.
+inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, const vec3& throughput, int edges,
+                                LightSampler::Kind kind, const LightFactors* learned, Mis mis) {
+    if (hit.is_type(BRDF_SPECULAR)) return vec3(0);
+    const auto chosen = choose_light(context, hit, kind, learned);
+    return chosen ? light_from(context, hit, *chosen, throughput, edges, mis) : vec3(0);
 }
 
 }  // namespace etendue

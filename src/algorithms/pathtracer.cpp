@@ -15,15 +15,20 @@ class Pathtracer : public Algorithm {
   public:
     explicit Pathtracer(const Parameters& parameters)
         : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")),
-          light_choice_(light_choice_of(parameters)),
+          light_choice_(parameters),
           mis_(mis_of(parameters)),
           roulette_(parameters) {}
+
+    bool prepare(const Preparation& preparation) override {
+        return light_choice_.prepare(preparation, MAX_CAM_PATH_LENGTH);
+    }
 
     vec3 radiance(Context& context, Ray ray) const override {
         vec3 radiance(0), throughput(1);
         float eta_scale = 1;
         // Where the ray comes from, and how it was chosen: its solid-angle pdf, or by no density at all.
         vec3 prev_position(0);
+        const LightFactors* prev_learned = nullptr;
         float prev_pdf = 0;
         bool prev_delta = true;
         for (int depth = 1;; ++depth) {
@@ -34,7 +39,7 @@ class Pathtracer : public Algorithm {
                 Contribution found{Technique::bsdf_sampling, depth, throughput * hit.Le()};
                 if (!prev_delta) {
                     found.pdf = prev_pdf;
-                    found.other_pdf = light_pdf(context, prev_position, hit);
+                    found.other_pdf = light_pdf(context, prev_position, prev_learned, hit);
                     found.weight = bsdf_sampling_weight(mis_, found.pdf, found.other_pdf);
                 }
                 radiance += context.light(found);
@@ -42,7 +47,9 @@ class Pathtracer : public Algorithm {
             if (!hit.valid || depth == MAX_CAM_PATH_LENGTH) break;
 
             // Light sampled on purpose, one edge further.
-            radiance += sample_direct_light(context, hit, throughput, depth + 1, light_choice_, mis_);
+            const LightFactors* const learned = light_choice_.learned(hit);
+            radiance +=
+                sample_direct_light(context, hit, throughput, depth + 1, light_choice_.kind(), learned, mis_);
 
             // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
             const auto bounce = context.bounce(hit);
@@ -53,6 +60,7 @@ class Pathtracer : public Algorithm {
 
             if (!roulette_.survives(context, throughput, eta_scale, depth)) break;
             prev_position = hit.point.position;
+            prev_learned = learned;
             prev_pdf = bounce->pdf;
             prev_delta = bounce->is_delta();
             ray = hit.ray_towards(bounce->wi);
@@ -63,19 +71,21 @@ class Pathtracer : public Algorithm {
     static std::vector<Parameter> parameters() {
         auto all = RussianRoulette::parameters();
         all.push_back(max_path_length_parameter());
-        all.push_back(light_choice_parameter());
+        all.push_back(LightChoice::parameter());
         all.push_back(mis_parameter());
         return all;
     }
 
   private:
-    float light_pdf(const Context& context, const vec3& reference, const SurfaceHit& hit) const {
-        return context.scene.light_source_pdf(light_choice_, reference, hit.light, hit.triangle) *
+    float light_pdf(const Context& context, const vec3& reference, const LightFactors* learned,
+                    const SurfaceHit& hit) const {
+        const auto kind = light_choice_.kind();
+        return context.scene.light_source_pdf(kind, reference, hit.light, hit.triangle, learned) *
                hit.light->pdf_Li(hit, mis_ != Mis::none);
     }
 
     const int MAX_CAM_PATH_LENGTH;
-    const LightSampler::Kind light_choice_;
+    LightChoice light_choice_;
     const Mis mis_;
     const RussianRoulette roulette_;
 };

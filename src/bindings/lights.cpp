@@ -1,10 +1,12 @@
 // Lights, their choice, and what they share with BSDF sampling, over whole arrays.
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>
 
 #include "algorithms/direct_light.h"
 #include "bindings/arrays.h"
+#include "driver/tiles.h"
 #include "gi/scene.h"
 
 namespace etendue {
@@ -123,7 +125,7 @@ LightSampler::Kind light_choice_named(const std::string& name) {
 }
 
 nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vectors2& u,
-                      const std::string& light_choice, bool with_mis) {
+                      const std::string& light_choice, bool with_mis, const LightFactors* learned) {
     require_same_length(reference.shape(0), u.shape(0), "reference and u");
     const size_t n = reference.shape(0);
     const LightSampler::Kind kind = light_choice_named(light_choice);
@@ -134,7 +136,7 @@ nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vecto
     for (size_t i = 0; i < n; ++i) {
         index.data()[i] = -1;
         const vec2 numbers = vec2_at(u, i);
-        const auto choice = scene.sample_light_source(kind, vec3_at(reference, i), numbers.x);
+        const auto choice = scene.sample_light_source(kind, vec3_at(reference, i), numbers.x, learned);
         if (!choice) continue;
         const auto sample = choice->light->sample_Li(vec3_at(reference, i), choice->triangle,
                                                      {choice->remapped, numbers.y}, with_mis);
@@ -152,7 +154,7 @@ nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vecto
 }
 
 auto light_pdf(const Scene& scene, const Vectors3& reference, const Vectors3& wi,
-               const std::string& light_choice, bool with_mis) {
+               const std::string& light_choice, bool with_mis, const LightFactors* learned) {
     require_same_length(reference.shape(0), wi.shape(0), "reference and wi");
     const size_t n = reference.shape(0);
     const LightSampler::Kind kind = light_choice_named(light_choice);
@@ -163,7 +165,7 @@ auto light_pdf(const Scene& scene, const Vectors3& reference, const Vectors3& wi
         const SurfaceHit hit = scene.intersect({from, vec3_at(wi, i)});
         index.data()[i] = hit.light ? static_cast<int32_t>(hit.light - scene.lights().data()) : -1;
         if (hit.light)
-            pdf.data()[i] = scene.light_source_pdf(kind, from, hit.light, hit.triangle) *
+            pdf.data()[i] = scene.light_source_pdf(kind, from, hit.light, hit.triangle, learned) *
                             hit.light->pdf_Li(hit, with_mis);
     }
     return std::pair{index, pdf};
@@ -182,7 +184,8 @@ void bind_choice(nb::module_& m) {
     scene.def_prop_ro("lights", &lights_of, "All lights, area lights in the order of their meshes.");
     scene.def(
         "sample_light_source",
-        [](const Scene& self, const Vectors3& reference, const Scalars& u, const std::string& kind) {
+        [](const Scene& self, const Vectors3& reference, const Scalars& u, const std::string& kind,
+           const LightFactors* learned) {
             require_same_length(reference.shape(0), u.shape(0), "reference and u");
             const LightSampler::Kind light_choice = light_choice_named(kind);
             auto index = new_array<Out<int32_t, nb::shape<-1>>>({u.shape(0)});
@@ -190,7 +193,7 @@ void bind_choice(nb::module_& m) {
             auto pmf = new_array<OutScalars>({u.shape(0)});
             for (size_t i = 0; i < u.shape(0); ++i) {
                 const auto choice =
-                    self.sample_light_source(light_choice, vec3_at(reference, i), u.data()[i]);
+                    self.sample_light_source(light_choice, vec3_at(reference, i), u.data()[i], learned);
                 index.data()[i] = choice ? static_cast<int32_t>(choice->light - self.lights().data()) : -1;
                 triangle.data()[i] = choice ? static_cast<int32_t>(choice->triangle) : -1;
                 pmf.data()[i] = choice ? choice->pmf : 0;
@@ -198,12 +201,14 @@ void bind_choice(nb::module_& m) {
             return std::tuple{index, triangle, pmf};
         },
         nb::arg("reference"), nb::arg("u"), nb::arg("light_choice") = "tree",
+        nb::arg("learned").none() = nb::none(),
         "reference: float32 (n, 3). u: float32 (n,) in [0, 1) -> index of the light chosen there and of the "
         "triangle of its\nmesh, int32 (n,), -1 where there is none to choose, and the probability of that "
         "choice "
         "(n,).");
     scene.def("sample_light", &sample_light, nb::arg("reference"), nb::arg("u"),
               nb::arg("light_choice") = "tree", nb::arg("with_mis") = true,
+              nb::arg("learned").none() = nb::none(),
               "reference: float32 (n, 3). u: float32 (n, 2) in [0, 1). One light sample each, as next event "
               "estimation draws it:\na dict of index (n,) int32 of the light, -1 where it failed, wi (n, 3), "
               "radiance "
@@ -212,26 +217,80 @@ void bind_choice(nb::module_& m) {
               "looked at.");
     scene.def(
         "light_pdf", &light_pdf, nb::arg("reference"), nb::arg("wi"), nb::arg("light_choice") = "tree",
-        nb::arg("with_mis") = true,
+        nb::arg("with_mis") = true, nb::arg("learned").none() = nb::none(),
         "float32 (n, 3), (n, 3) -> index (n,) int32 of the light that each ray finds, -1 for none, and (n,): "
         "density of\n`sample_light` at wi.");
     scene.def(
         "light_source_pdf",
         [](const Scene& self, const Vectors3& reference, size_t index, uint32_t triangle,
-           const std::string& kind) {
+           const std::string& kind, const LightFactors* learned) {
             const Light& light = self.lights().at(index);
             if (triangle >= (light.mesh() ? light.mesh()->triangles.size() : 1))
                 throw std::out_of_range("the light has no such triangle");
             const LightSampler::Kind light_choice = light_choice_named(kind);
             auto pmf = new_array<OutScalars>({reference.shape(0)});
             for (size_t i = 0; i < reference.shape(0); ++i)
-                pmf.data()[i] = self.light_source_pdf(light_choice, vec3_at(reference, i), &light, triangle);
+                pmf.data()[i] =
+                    self.light_source_pdf(light_choice, vec3_at(reference, i), &light, triangle, learned);
             return pmf;
         },
         nb::arg("reference"), nb::arg("index"), nb::arg("triangle") = 0, nb::arg("light_choice") = "tree",
+        nb::arg("learned").none() = nb::none(),
         "float32 (n, 3) -> (n,): probability with which sample_light_source chooses this triangle of this "
         "light "
         "there.");
+}
+
+using Slots = std::array<float, LightTree::WIDTH>;
+
+LightFactors make_factors(float triangles_share, const Slots& root,
+                          const std::array<Slots, LightTree::WIDTH>& below) {
+    const auto positive = [](const Slots& slots) {
+        return std::ranges::all_of(slots, [](float factor) { return factor > 0 && factor < INFINITE; });
+    };
+    if (!(triangles_share > 0 && triangles_share <= 1))
+        throw std::invalid_argument("triangles_share: above 0 and at most 1 is needed");
+    if (!positive(root) || !std::ranges::all_of(below, positive))
+        throw std::invalid_argument("factors: finite numbers above 0 are needed");
+    return {triangles_share, {root, below}};
+}
+
+void bind_guide(nb::module_& m) {
+    nb::class_<LightFactors>(
+        m, "LightFactors",
+        "What was learned about the lights of a region of a scene: what the importances of the light tree's "
+        "first two levels\nare multiplied by.")
+        .def(
+            nb::new_(&make_factors), nb::arg("triangles_share"), nb::arg("root"), nb::arg("below"),
+            "triangles_share: probability of choosing a triangle rather than another light, 1 without "
+            "others. root: 16 numbers,\nfor the slots of the root. below: 16 of 16, for the slots of what is "
+            "below each. Raises ValueError unless all are > 0.")
+        .def_ro("triangles_share", &LightFactors::triangles_share)
+        .def_prop_ro("root", [](const LightFactors& f) { return f.tree.root; })
+        .def_prop_ro("below", [](const LightFactors& f) { return f.tree.below; });
+    nb::class_<LightGuide>(m, "LightGuide",
+                           "Where light does arrive from, region by region (`light_choice`: learned).")
+        .def(
+            "__init__",
+            [](LightGuide* self, const Scene& scene, const Camera& camera, int max_edges, int threads) {
+                const nb::gil_scoped_release release;
+                new (self) LightGuide;
+                TileWorkers workers(thread_count(threads));
+                self->learn({scene, camera,
+                             [&](uint32_t count, const std::function<void(uint32_t)>& work) {
+                                 workers.in_order(count, work);
+                                 return true;
+                             }},
+                            max_edges);
+            },
+            nb::arg("scene"), nb::arg("camera"), nb::arg("max_edges") = 10, nb::arg("threads") = 0,
+            "Learns from paths of that camera, as a render does before its first sample.")
+        .def(
+            "at",
+            [](const LightGuide& self, const std::array<float, 3>& position,
+               const std::array<float, 3>& normal) { return self.at(to_vec3(position), to_vec3(normal)); },
+            nb::rv_policy::reference_internal, nb::arg("position"), nb::arg("normal"),
+            "The LightFactors for a point and its unit normal; None where nothing is known.");
 }
 
 /// The weight that a heuristic gives to one of two techniques, for arrays of the pdfs of both.
@@ -260,6 +319,7 @@ void bind_weights(nb::module_& m) {
 
 void bind_lights(nb::module_& m) {
     bind_light(m);
+    bind_guide(m);
     bind_choice(m);
     bind_weights(m);
 }

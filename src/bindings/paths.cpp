@@ -12,7 +12,7 @@ namespace etendue {
 
 namespace {
 
-PathRecord replay_sample(const Renderer& renderer, uint32_t x, uint32_t y, uint64_t sample) {
+PathRecord replay_sample(Renderer& renderer, uint32_t x, uint32_t y, uint64_t sample) {
     const Camera& camera = renderer.sensor().camera;
     if (x >= camera.width() || y >= camera.height()) {
         throw std::invalid_argument("there is no pixel " + std::to_string(x) + "," + std::to_string(y) +
@@ -117,7 +117,7 @@ void bind_replay(nb::module_& m) {
         "pixel.");
 }
 
-std::unique_ptr<TechniqueFilm> make_technique_film(const Renderer& renderer, int max_edges) {
+std::unique_ptr<TechniqueFilm> make_technique_film(Renderer& renderer, int max_edges) {
     return std::make_unique<TechniqueFilm>(renderer.scene(), renderer.sensor(), renderer.algorithm(),
                                            max_edges, renderer.threads());
 }

@@ -10,7 +10,7 @@ void bind_ray_record(nb::module_& m) {
                           "The rays that a render traces, to be traced again with nothing around them.")
         .def(
             "__init__",
-            [](RayRecord* self, const Renderer& renderer, uint64_t samples) {
+            [](RayRecord* self, Renderer& renderer, uint64_t samples) {
                 const nb::gil_scoped_release release;
                 new (self) RayRecord(renderer.scene(), renderer.sensor(), renderer.algorithm(), samples,
                                      renderer.threads());

@@ -57,6 +57,7 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     const Clock::time_point start = Clock::now();
     const double seconds_before = seconds_;
     TileWorkers workers(threads_);
+    prepare(stop_);
     uint64_t done = samples, taken = 0;
     for (const Pixel& pixel : film_.pixels()) {
         done = std::min(done, pixel.count);
@@ -91,8 +92,10 @@ bool Renderer::render(uint64_t samples, double time_limit) {
 
 bool Renderer::render_coarse(uint32_t stride) {
     const Clock::time_point start = Clock::now();
-    TileWorkers(threads_).for_each(tiles_,
-                                   [&](uint32_t index, const Tile&) { render_tile(index, stride, 1); });
+    if (prepare(stop_)) {
+        TileWorkers(threads_).for_each(tiles_,
+                                       [&](uint32_t index, const Tile&) { render_tile(index, stride, 1); });
+    }
     seconds_ = seconds_ + seconds_since(start);
     return !stop_.exchange(false);
 }
@@ -105,6 +108,7 @@ bool Renderer::render_until(double error_bound, double time_limit) {
         return false;
     const double seconds_before = seconds_ - seconds_since(start);
     TileWorkers workers(threads_);
+    prepare(stop_);
     uint64_t taken = 0;
     for (const Pixel& pixel : film_.pixels()) taken += pixel.count;
     samples_done_ = taken;
@@ -132,6 +136,24 @@ bool Renderer::render_until(double error_bound, double time_limit) {
     seconds_ = seconds_before + seconds_since(start);
     stop_ = false;
     return complete;
+}
+
+bool Renderer::prepare(const std::atomic<bool>& cancelled) {
+    const std::lock_guard lock(prepare_mutex_);
+    if (is_prepared_) return true;
+    const auto for_each = [&](uint32_t count, const std::function<void(uint32_t)>& work) {
+        std::atomic<uint32_t> done = 0;
+        TileWorkers(threads_).in_order(count, [&](uint32_t i) {
+            if (!cancelled) work(i), ++done;
+        });
+        return done == count;
+    };
+    return is_prepared_ = algorithm_->prepare({scene_, sensor_.camera, for_each});
+}
+
+const Algorithm& Renderer::algorithm() {
+    prepare(false);
+    return *algorithm_;
 }
 
 std::vector<TileError> Renderer::look(TileWorkers& workers) {

@@ -66,7 +66,8 @@ class Renderer {
 
     const Scene& scene() const { return scene_; }
     const Sensor& sensor() const { return sensor_; }
-    const Algorithm& algorithm() const { return *algorithm_; }
+    /// Ready for estimates. From any thread.
+    const Algorithm& algorithm();
     /// While nothing renders; `read` is for all other times.
     const Film& film() const { return film_; }
     /// Calls visit(tile, film) for one tile after the other, each at a moment when nobody renders it: at any
@@ -103,6 +104,8 @@ class Renderer {
     static constexpr size_t MAX_INVALID_LISTED = 1000;
 
   private:
+    /// What the estimator wants to know before its first sample. False where `cancelled` became true meanwhile.
+    bool prepare(const std::atomic<bool>& cancelled);
     /// The tiles' errors, and the film's for others to see.
     std::vector<TileError> look(TileWorkers& workers);
     void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
@@ -116,6 +119,8 @@ class Renderer {
     const Scene& scene_;
     Sensor sensor_;
     std::unique_ptr<Algorithm> algorithm_;
+    std::mutex prepare_mutex_;
+    bool is_prepared_ = false;
     uint64_t first_sample_;
     int threads_;
     std::shared_ptr<Films> films_;

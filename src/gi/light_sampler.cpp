@@ -39,25 +39,39 @@ LightSampler::LightSampler(std::span<const Light> lights) : lights_(lights), fir
     triangles_share_ = of_triangles / by_power_.total();
 }
 
-std::optional<LightSampler::Choice> LightSampler::sample(Kind kind, const vec3& reference, double u) const {
+std::optional<LightSampler::Choice> LightSampler::sample(Kind kind, const vec3& reference, double u,
+                                                         const LightFactors* learned) const {
     if (by_power_.total() <= 0) return std::nullopt;
-    if (kind == Kind::tree && u < triangles_share_) {
-        const auto choice = tree_.sample(reference, std::min(u / triangles_share_, 1 - 0x1p-52));
-        if (!choice) return std::nullopt;
-        const auto [light, triangle] = emitters_[choice->emitter];
-        return Choice{light, triangle, static_cast<float>(triangles_share_) * choice->pmf,
-                      std::min(static_cast<float>(choice->remapped), ONE_MINUS_EPSILON)};
+    float pmf = 1;
+    if (kind == Kind::tree && triangles_share_ > 0) {
+        const double share = learned ? learned->triangles_share : triangles_share_;
+        if (u < share) {
+            const auto choice =
+                tree_.sample(reference, std::min(u / share, 1 - 0x1p-52), learned ? &learned->tree : nullptr);
+            if (!choice) return std::nullopt;
+            const auto [light, triangle] = emitters_[choice->emitter];
+            return Choice{light, triangle, static_cast<float>(share) * choice->pmf,
+                          std::min(static_cast<float>(choice->remapped), ONE_MINUS_EPSILON)};
+        }
+        // Among the others by power: they come last.
+        const double stretch = (1 - triangles_share_) / (1 - share);
+        pmf = static_cast<float>(1 / stretch);
+        u = std::clamp(triangles_share_ + (u - share) * stretch, triangles_share_, 1 - 0x1p-53);
     }
     const auto choice = by_power_.sample(u);
     const auto [light, triangle] = emitters_[choice.index];
-    return Choice{light, triangle, choice.pmf, choice.remapped};
+    return Choice{light, triangle, pmf * choice.pmf, choice.remapped};
 }
 
-float LightSampler::pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle) const {
+float LightSampler::pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle,
+                        const LightFactors* learned) const {
     if (by_power_.total() <= 0) return 0;
-    const uint32_t emitter = first_[light - lights_.data()] + triangle;
-    if (kind == Kind::power || triangles_share_ == 0 || !light->mesh()) return by_power_.pmf(emitter);
-    return static_cast<float>(triangles_share_) * tree_.pmf(reference, emitter);
+    const uint32_t index = emitter(light, triangle);
+    if (kind == Kind::power || triangles_share_ == 0) return by_power_.pmf(index);
+    const double share = learned ? learned->triangles_share : triangles_share_;
+    if (!light->mesh())
+        return static_cast<float>((1 - share) / (1 - triangles_share_)) * by_power_.pmf(index);
+    return static_cast<float>(share) * tree_.pmf(reference, index, learned ? &learned->tree : nullptr);
 }
 
 }  // namespace etendue

@@ -10,6 +10,12 @@
 
 namespace etendue {
 
+/// What was learned about the lights of a region of the scene.
+struct LightFactors {
+    float triangles_share;  // probability of choosing a triangle rather than another light; in (0, 1]
+    LightTree::Factors tree;
+};
+
 class LightSampler {
   public:
     /// `power`: by what triangles emit, from everywhere alike. `tree`: by how much of it could arrive at the reference
@@ -28,9 +34,20 @@ class LightSampler {
     explicit LightSampler(std::span<const Light> lights);
 
     /// Empty in a scene without light, or where the tree knows of none that could arrive. `u` in [0, 1) has more digits
-    /// than a float, as many as both the choice and `remapped` need.
-    std::optional<Choice> sample(Kind kind, const vec3& reference, double u) const;
-    float pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle) const;
+    /// than a float, as many as both the choice and `remapped` need. `learned` counts for the tree alone.
+    std::optional<Choice> sample(Kind kind, const vec3& reference, double u,
+                                 const LightFactors* learned = nullptr) const;
+    float pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle,
+              const LightFactors* learned = nullptr) const;
+
+    /// The tree over all triangles; empty where there are so few that their power decides.
+    const LightTree& tree() const { return tree_; }
+    /// Probability of choosing from the tree where nothing is learned.
+    double triangles_share() const { return triangles_share_; }
+    /// Number of a triangle of a light among the tree's emitters.
+    uint32_t emitter(const Light* light, uint32_t triangle) const {
+        return first_[light - lights_.data()] + triangle;
+    }
 
   private:
     struct Emitter {

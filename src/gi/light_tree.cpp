@@ -199,12 +199,23 @@ inline LightTree::Sums LightTree::sums_before(const Importances& importance) {
     return before;
 }
 
-std::optional<LightTree::Choice> LightTree::sample(const vec3& reference, double u) const {
+inline LightTree::Importances LightTree::importances(const Node& node, const vec3& reference,
+                                                     const Factors* factors, uint32_t depth,
+                                                     uint32_t root_slot) {
+    Importances out = importances(node, reference);
+    if (!factors || depth > 1) return out;
+    const auto& known = depth == 0 ? factors->root : factors->below[root_slot];
+    for (uint32_t i = 0; i < WIDTH; ++i) out[i] *= known[i];
+    return out;
+}
+
+std::optional<LightTree::Choice> LightTree::sample(const vec3& reference, double u,
+                                                   const Factors* factors) const {
     if (nodes_.empty()) return std::nullopt;
     float pmf = 1;
-    for (uint32_t index = 0;;) {
+    for (uint32_t index = 0, depth = 0, root_slot = 0;; ++depth) {
         const Node& node = nodes_[index];
-        const Importances importance = importances(node, reference);
+        const Importances importance = importances(node, reference, factors, depth, root_slot);
         const Sums before = sums_before(importance);
         const auto total = static_cast<float>(before[WIDTH]);
         if (!may_choose(total)) return std::nullopt;
@@ -217,16 +228,17 @@ std::optional<LightTree::Choice> LightTree::sample(const vec3& reference, double
         u = std::min((target - before[chosen]) / importance[chosen], 1 - 0x1p-52);
         index = node.child[chosen];
         if (index & LEAF) return Choice{index & ~LEAF, pmf, u};
+        if (depth == 0) root_slot = chosen;
     }
 }
 
-float LightTree::pmf(const vec3& reference, uint32_t emitter) const {
+float LightTree::pmf(const vec3& reference, uint32_t emitter, const Factors* factors) const {
     const auto [slots, length] = ways_[emitter];
     float pmf = length > 0 ? 1 : 0;
     uint32_t index = 0;
     for (uint32_t depth = 0; depth < length; ++depth) {
         const Node& node = nodes_[index];
-        const Importances importance = importances(node, reference);
+        const Importances importance = importances(node, reference, factors, depth, slots & (WIDTH - 1));
         const auto total = static_cast<float>(sums_before(importance)[WIDTH]);
         if (!may_choose(total)) return 0;
         const uint32_t slot = slots >> (BITS * depth) & (WIDTH - 1);
@@ -234,6 +246,16 @@ float LightTree::pmf(const vec3& reference, uint32_t emitter) const {
         index = node.child[slot];
     }
     return pmf;
+}
+
+LightTree::Slots LightTree::slots(uint32_t emitter) const {
+    const auto [slots, length] = ways_[emitter];
+    if (length == 1) return {static_cast<uint32_t>(slots), std::nullopt};
+    return {static_cast<uint32_t>(slots & (WIDTH - 1)), static_cast<uint32_t>(slots >> BITS & (WIDTH - 1))};
+}
+
+float LightTree::importance(const vec3& reference) const {
+    return nodes_.empty() ? 0 : static_cast<float>(sums_before(importances(nodes_[0], reference))[WIDTH]);
 }
 
 }  // namespace etendue

@@ -39,10 +39,22 @@ struct EmitterBounds {
 
 class LightTree {
   public:
+    static constexpr uint32_t WIDTH = 16;
     struct Choice {
         uint32_t emitter;
         float pmf;
         double remapped;  // `u`, uniform in [0, 1) again
+    };
+    /// What the importances of the first two levels are multiplied by, where more is known than the tree knows: at
+    /// the root, and below each of its slots. All > 0.
+    struct Factors {
+        std::array<float, WIDTH> root;
+        std::array<std::array<float, WIDTH>, WIDTH> below;
+    };
+    /// The slots on the way to an emitter at these two levels.
+    struct Slots {
+        uint32_t root;
+        std::optional<uint32_t> below;  // empty where the root leads to the emitter
     };
 
     LightTree() = default;
@@ -50,12 +62,18 @@ class LightTree {
 
     /// Empty where no light of the emitters can arrive, or where the choice led to some of which none can. `u` is in
     /// [0, 1 - 2^-52].
-    std::optional<Choice> sample(const vec3& reference, double u) const;
+    std::optional<Choice> sample(const vec3& reference, double u, const Factors* factors = nullptr) const;
     /// Probability with which `sample` chooses this emitter.
-    float pmf(const vec3& reference, uint32_t emitter) const;
+    float pmf(const vec3& reference, uint32_t emitter, const Factors* factors = nullptr) const;
+
+    bool empty() const { return nodes_.empty(); }
+    /// Of an emitter with power.
+    Slots slots(uint32_t emitter) const;
+    /// What is taken for arriving at a point from all emitters together.
+    float importance(const vec3& reference) const;
 
   private:
-    static constexpr uint32_t WIDTH = 16, BITS = 4;
+    static constexpr uint32_t BITS = 4;
     static constexpr uint32_t LEAF = 1u << 31;
     /// The nodes or emitters below a node, side by side, so that vector instructions look at all of them at once.
     struct alignas(64) Node {
@@ -71,6 +89,9 @@ class LightTree {
     using Sums = std::array<double, WIDTH + 1>;
 
     static Importances importances(const Node& node, const vec3& reference);
+    /// With the factors of a node at this depth, below this slot of the root.
+    static Importances importances(const Node& node, const vec3& reference, const Factors* factors,
+                                   uint32_t depth, uint32_t root_slot);
     /// Of all slots before each, and of all.
     static Sums sums_before(const Importances& importance);
     uint32_t build(std::span<const EmitterBounds> emitters, std::span<uint32_t> indices, uint64_t path,

@@ -59,16 +59,18 @@ class Scene {
     /// Traces all of these and does nothing else, as fast as the library does. Returns how many hit something.
     uint64_t trace(std::span<const TracedRay> rays) const;
 
-    /// A light, and a triangle of it, for a reference point; empty where there is none to choose.
+    /// A light, and a triangle of it, for a reference point; empty where there is none to choose. `learned`: for the
+    /// region of that point, or null.
     std::optional<LightSampler::Choice> sample_light_source(LightSampler::Kind kind, const vec3& reference,
-                                                            double u) const {
-        return light_sampler_.sample(kind, reference, u);
+                                                            double u, const LightFactors* learned) const {
+        return light_sampler_.sample(kind, reference, u, learned);
     }
     /// Probability with which sample_light_source chooses this triangle of the light; the sky's is number 0.
     float light_source_pdf(LightSampler::Kind kind, const vec3& reference, const Light* light,
-                           uint32_t triangle) const {
-        return light_sampler_.pmf(kind, reference, light, triangle);
+                           uint32_t triangle, const LightFactors* learned) const {
+        return light_sampler_.pmf(kind, reference, light, triangle, learned);
     }
+    const LightSampler& light_sampler() const { return light_sampler_; }
 
     const std::vector<Light>& lights() const { return lights_; }
     const std::vector<Mesh>& meshes() const;

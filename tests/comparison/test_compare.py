@@ -121,7 +121,7 @@ class TestResults:
         assert nee["table"]["rays/sample"]["value"] > 1.2 * nee["table"]["mean path length"]["value"]
         assert found["settings"] == {
             "algorithm": ["Pathtracer", "NaivePathtracer"],
-            "light_choice": ["tree", None],
+            "light_choice": ["learned", None],
             "mis": ["none", None],
         }
 

@@ -35,6 +35,7 @@ ANALYTIC = "tests/estimators/test_analytic.py"
 BSDF = "tests/statistics/test_bsdf_sampling.py"
 LIGHTS = "tests/statistics/test_light_sampling.py"
 CHOICE = "tests/statistics/test_light_choice.py"
+GUIDE = "tests/estimators/test_light_guide.py"
 SAMPLER = "tests/statistics/test_sampler.py"
 
 
@@ -53,14 +54,14 @@ MUTANTS = (
     Mutant(
         "light-selection probability missing",
         "algorithms/direct_light.h",
-        "choice->pmf * sample->pdf",
+        "choice.pmf * sample->pdf",
         "sample->pdf",
         (ANALYTIC, "-k", "two_lamps"),
     ),
     Mutant(
         "light-selection probability missing in the weight of light found by chance",
         "algorithms/pathtracer.cpp",
-        "context.scene.light_source_pdf(light_choice_, reference, hit.light, hit.triangle)",
+        "context.scene.light_source_pdf(kind, reference, hit.light, hit.triangle, learned)",
         "1",
         (ANALYTIC, "-k", "two_lamps"),
     ),
@@ -98,6 +99,20 @@ MUTANTS = (
         "pmf *= importance[slot] / total",
         "pmf *= importance[slot] / (total - 0.5f * importance[0])",
         (CHOICE,),
+    ),
+    Mutant(
+        "what was learned of lights forgotten in the weight of light found by chance",
+        "algorithms/pathtracer.cpp",
+        "light_pdf(context, prev_position, prev_learned, hit)",
+        "light_pdf(context, prev_position, nullptr, hit)",
+        (GUIDE, "-k", "same_picture"),
+    ),
+    Mutant(
+        "lights left out that no path has seen shine",
+        "algorithms/light_guide.cpp",
+        "PRIOR_SAMPLES * prior[i]",
+        "0 * prior[i]",
+        (GUIDE,),
     ),
     Mutant(
         "points crowd in a corner of a triangle",

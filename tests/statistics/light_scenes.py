@@ -6,6 +6,7 @@ import itertools
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -170,9 +171,21 @@ SCENES: dict[str, Callable[[], Scene]] = {
 }
 
 # In front, aside, near, at a grazing angle, and behind (the lamps that are one-sided are dark from there).
+#: values of the parameter
+LIGHT_CHOICES = next(p.choices for a in _core.algorithms() for p in a.parameters if p.name == "light_choice")
 REFERENCES = np.array(
     [(0.1, 0, 0.2), (3, 0.5, -1), (0.2, 1.9, 0.1), (4, 1.8, 0.3), (0.3, 4, -0.2)], dtype=np.float32
 )
+
+
+def choosing(scene: _core.Scene, light_choice: str) -> dict[str, Any]:
+    """Arguments of the scene's functions for a `light_choice`; for "learned" with factors of all sizes."""
+    if light_choice != "learned":
+        return {"light_choice": light_choice}
+    rng = np.random.default_rng(5)
+    slots = rng.lognormal(0, 2, (17, 16)).astype(np.float32)
+    share = 0.3 if any(light.kind == "SkyLight" for light in scene.lights) else 1.0
+    return {"learned": _core.LightFactors(share, slots[0].tolist(), slots[1:].tolist())}
 
 
 def registered_kinds() -> set[str]:

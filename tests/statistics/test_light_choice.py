@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 import pytest
-from light_scenes import GREY, REFERENCES, SCENES, lamp, mesh, rows, sky, square
+from light_scenes import GREY, LIGHT_CHOICES, REFERENCES, SCENES, choosing, lamp, mesh, rows, sky, square
 from numpy.typing import NDArray
 from stats import chi_square, sidak
 
@@ -35,7 +35,6 @@ def sphere_of_lamps() -> _core.Scene:
 
 
 ALL = SCENES | {"many_lamps": many_lamps, "sphere_of_lamps": sphere_of_lamps}
-KINDS = ("tree", "power")
 
 
 def triangles(scene: _core.Scene) -> list[tuple[int, int]]:
@@ -44,12 +43,13 @@ def triangles(scene: _core.Scene) -> list[tuple[int, int]]:
 
 
 def probabilities(scene: _core.Scene, reference: NDArray[np.float32], kind: str) -> NDArray[np.float64]:
+    choice = choosing(scene, kind)
     return np.array(
-        [scene.light_source_pdf(reference[None], i, t, kind)[0] for i, t in triangles(scene)], dtype=float
+        [scene.light_source_pdf(reference[None], i, t, **choice)[0] for i, t in triangles(scene)], dtype=float
     )
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LIGHT_CHOICES)
 @pytest.mark.parametrize("name", ALL)
 def test_frequencies(name: str, kind: str) -> None:
     scene = ALL[name]()
@@ -59,32 +59,32 @@ def test_frequencies(name: str, kind: str) -> None:
         # The tree may lead to where no light can come from, and then chooses none.
         failed = 1 - expected.sum()
         assert failed > -1e-5
-        assert kind == "tree" or failed < 1e-5
+        assert kind != "power" or failed < 1e-5
         n = 100_000
         u = np.random.default_rng(1).random(n, dtype=np.float32)
-        index, triangle, pdf = scene.sample_light_source(rows(reference, n), u, kind)
+        index, triangle, pdf = scene.sample_light_source(rows(reference, n), u, **choosing(scene, kind))
         chosen = np.array(
             [number.get(which, -1) for which in zip(index.tolist(), triangle.tolist(), strict=True)]
         )
         counts = np.bincount(chosen + 1, minlength=len(number) + 1)
         all_of_them = np.concatenate([[max(failed, 0)], expected])
-        assert chi_square(counts, all_of_them * n).p > sidak(len(ALL) * len(KINDS) * len(REFERENCES))
+        assert chi_square(counts, all_of_them * n).p > sidak(len(ALL) * len(LIGHT_CHOICES) * len(REFERENCES))
         np.testing.assert_allclose(pdf[chosen >= 0], expected[chosen[chosen >= 0]], rtol=1e-5)
         assert not pdf[chosen < 0].any()
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LIGHT_CHOICES)
 @pytest.mark.parametrize("name", ALL)
 def test_even_numbers_choose_evenly(name: str, kind: str) -> None:
     """Numbers that fill [0, 1) evenly choose each triangle as often as they can, to one."""
     scene = ALL[name]()
     for reference in REFERENCES[:2]:
         u = ((np.arange(2**16) + 0.5) / 2**16).astype(np.float32)
-        index, triangle, _ = scene.sample_light_source(rows(reference, len(u)), u, kind)
+        index, triangle, _ = scene.sample_light_source(rows(reference, len(u)), u, **choosing(scene, kind))
         for (i, t), p in zip(triangles(scene), probabilities(scene, reference, kind), strict=True):
             assert abs(((index == i) & (triangle == t)).sum() - p * 2**16) <= 1.1
         ends = np.array([0, 1e-30, 1 - 2**-24], dtype=np.float32)
-        index, triangle, pdf = scene.sample_light_source(rows(reference, 3), ends, kind)
+        index, triangle, pdf = scene.sample_light_source(rows(reference, 3), ends, **choosing(scene, kind))
         assert (pdf[index >= 0] > 0).all()
 
 
@@ -134,7 +134,7 @@ def test_the_tree_prefers_what_is_near_and_faces_the_point() -> None:
     assert p.sum() == pytest.approx(1, abs=1e-5)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", LIGHT_CHOICES)
 @pytest.mark.parametrize("strength", [1e30, 1e38, np.inf])
 def test_lamps_brighter_than_numbers(kind: str, strength: float) -> None:
     """Their choice, and the points on them, stay numbers, far away and on the lamp itself."""
@@ -142,7 +142,8 @@ def test_lamps_brighter_than_numbers(kind: str, strength: float) -> None:
     on_it = np.array([0.2, 2, 0.1], np.float32)
     rng = np.random.default_rng(8)
     for reference in (*REFERENCES, on_it):
-        sample = world.sample_light(rows(reference, 500), rng.random((500, 2), dtype=np.float32), kind)
+        u = rng.random((500, 2), dtype=np.float32)
+        sample = world.sample_light(rows(reference, 500), u, **choosing(world, kind))
         assert np.isfinite(sample["position"]).all()
         assert np.isfinite(sample["wi"]).all()
         assert np.isfinite(probabilities(world, reference, kind)).all()
@@ -180,9 +181,10 @@ def test_without_light_nothing_is_chosen() -> None:
         sky(np.zeros((2, 4, 3))),
         _core.Scene([square()], [lamp(albedo=(0, 0, 0))]),
     ):
-        for kind in KINDS:
+        for kind in LIGHT_CHOICES:
             u = np.array([0, 0.5, 0.99], np.float32)
-            index, triangle, pdf = scene.sample_light_source(np.zeros((3, 3), np.float32), u, kind)
+            reference = np.zeros((3, 3), np.float32)
+            index, triangle, pdf = scene.sample_light_source(reference, u, **choosing(scene, kind))
             assert (index == -1).all()
             assert (triangle == -1).all()
             assert not pdf.any()

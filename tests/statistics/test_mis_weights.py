@@ -7,13 +7,12 @@ import itertools
 import numpy as np
 import pytest
 from bsdf_cases import cases
-from light_scenes import REFERENCES, SCENES, rows, seen
+from light_scenes import LIGHT_CHOICES, REFERENCES, SCENES, choosing, rows, seen
 from numpy.typing import NDArray
 
 from etendue import _core
 
 HEURISTICS = next(p.choices for a in _core.algorithms() for p in a.parameters if p.name == "mis")
-LIGHT_CHOICES = next(p.choices for a in _core.algorithms() for p in a.parameters if p.name == "light_choice")
 SURFACES = [case for case in cases(("",), (0.01, 0.1, 0.6)) if case.bsdf != "light"]
 
 # The surface at the reference point faces up: local (x, y, z) is world (x, z, y), mirrored to stay
@@ -64,7 +63,9 @@ def recorded(
     there = rows(reference, n)
     own = np.zeros(n, dtype=np.float32)
     if from_light:
-        sample = scene.sample_light(there, rng.random((n, 2), dtype=np.float32), light_choice)
+        sample = scene.sample_light(
+            there, rng.random((n, 2), dtype=np.float32), **choosing(scene, light_choice)
+        )
         chosen = sample["index"]
         wi = np.zeros((n, 3), dtype=np.float32)
         for i, light in enumerate(scene.lights):
@@ -78,7 +79,7 @@ def recorded(
     wi = np.ascontiguousarray(wi)
     good = own > 0
     wi[~good] = [0, 1, 0]
-    found, light_pdf = scene.light_pdf(there, wi, light_choice)
+    found, light_pdf = scene.light_pdf(there, wi, **choosing(scene, light_choice))
     found = np.where(light_pdf > 0, found, -1)
     bsdf_pdf = bsdf.pdf(rows(WO, n), np.ascontiguousarray(wi @ TO_LOCAL.T))
     good &= (found == chosen) & (found >= 0) if from_light else found >= 0
