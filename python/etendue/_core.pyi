@@ -336,7 +336,7 @@ class LightGuide:
 
     def __init__(self, scene: Scene, camera: Camera, max_edges: int = 10, threads: int = 0) -> None:
         """
-        Learns from paths of that camera, as a render does before its first sample.
+        Learns from paths of that camera, as a render by Pathtracer does before its first sample.
         """
 
     def at(self, position: Sequence[float], normal: Sequence[float]) -> LightFactors:
@@ -449,6 +449,12 @@ class Renderer:
         is kept. How many samples a pixel has in the end depends on the samples alone.
         """
 
+    def prepare(self) -> bool:
+        """
+        Lets the estimator learn what it wants to know before its first sample, as a render would: a tenth of a second.
+        Returns False where `cancel` ended it.
+        """
+
     def cancel(self) -> None:
         """Makes a running render return, from another thread."""
 
@@ -498,7 +504,7 @@ class Renderer:
 
     @property
     def rays(self) -> int:
-        """Rays traced, shadow rays included."""
+        """Rays traced, shadow rays included, without those of `prepare`."""
 
     @property
     def seconds(self) -> float:

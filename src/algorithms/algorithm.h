@@ -102,8 +102,8 @@ class Algorithm {
   public:
     virtual ~Algorithm() = default;
     /// Called once, before all that is below; again where it returned false, which it does where it was cut short.
-    /// What it learns must depend on the scene, the camera and the parameters alone, and on no random number that an
-    /// estimate uses: no estimate would be unbiased otherwise, nor come out the same again.
+    /// Learned from random numbers that an estimate uses, anything would bias that estimate; learned from anything but
+    /// the scene, the camera and the parameters, a render would not come out the same again.
     virtual bool prepare(const Preparation&) { return true; }
     /// One unbiased estimate of the radiance along a camera ray. Called by many threads at once.
     virtual vec3 radiance(Context& context, Ray ray) const = 0;

@@ -15,7 +15,7 @@ class DirectIllumination : public Algorithm {
         : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")), light_choice_(parameters) {}
 
     bool prepare(const Preparation& preparation) override {
-        return light_choice_.prepare(preparation, MAX_CAM_PATH_LENGTH);
+        return light_choice_.prepare(preparation, std::min(MAX_CAM_PATH_LENGTH, 2), Mis::none);
     }
 
     vec3 radiance(Context& context, Ray ray) const override {

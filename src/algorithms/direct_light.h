@@ -27,10 +27,11 @@ inline Parameter mis_parameter() {
 /// How an estimator chooses its lights.
 class LightChoice {
   public:
-    explicit LightChoice(const Parameters& parameters)
-        : kind_(parameters.get<std::string>("light_choice") == "power" ? LightSampler::Kind::power
-                                                                       : LightSampler::Kind::tree),
-          learns_(parameters.get<std::string>("light_choice") == "learned") {}
+    explicit LightChoice(const Parameters& parameters) {
+        const auto name = parameters.get<std::string>("light_choice");
+        kind_ = name == "power" ? LightSampler::Kind::power : LightSampler::Kind::tree;
+        learns_ = name == "learned";
+    }
 
     static Parameter parameter() {
         return {
@@ -44,8 +45,8 @@ class LightChoice {
     }
 
     /// See Algorithm::prepare.
-    bool prepare(const Preparation& preparation, int max_edges) {
-        return !learns_ || guide_.learn(preparation, max_edges);
+    bool prepare(const Preparation& preparation, int max_edges, Mis mis) {
+        return !learns_ || guide_.learn(preparation, max_edges, mis);
     }
 
     LightSampler::Kind kind() const { return kind_; }

@@ -1,11 +1,11 @@
 // Where light does arrive from, region by region, learned before a render from a few thousand paths.
 //
 // The light tree knows how much of each light could arrive at a point, but of no wall between the two, nor of the
-// surface there.  Here the scene is cut into cells, by position and by the side that surfaces face, and each learns
-// by what to multiply the tree's importances, so that lights are chosen about in proportion to the root of the mean
-// square of what they bring, which gives the least variance (Vevoda, Kondapaneni and Krivanek 2018, "Bayesian online
-// regression for adaptive direct illumination sampling", 4.1; Pantaleoni 2019, "Importance Sampling of Many Lights
-// with Reinforcement Lightcuts Learning").
+// surface there. Here the scene is cut into cells, by position and by the side that surfaces face, and each learns by
+// what to multiply the tree's importances, so that lights are chosen about in proportion to the root of the mean
+// square of what they bring: of choices by fixed probabilities, those have the least variance (Vevoda, Kondapaneni and
+// Krivanek 2018, "Bayesian online regression for adaptive direct illumination sampling"; Pantaleoni 2019, "Importance
+// Sampling of Many Lights with Reinforcement Lightcuts Learning").
 //
 // No light is ever left out, so what is learned moves noise, never the picture.
 #pragma once
@@ -17,12 +17,13 @@
 namespace etendue {
 
 struct Preparation;
+enum class Mis;
 
 class LightGuide {
   public:
-    /// Traces PATHS paths of up to `max_edges` edges and a few vertices, always the same ones. False, with nothing learned, where it was
-    /// cut short.
-    bool learn(const Preparation& preparation, int max_edges);
+    /// Traces the beginnings of PATHS paths of up to `max_edges` edges, always the same ones. False, with nothing
+    /// learned, where it was cut short. To be called once it has learned nothing yet.
+    bool learn(const Preparation& preparation, int max_edges, Mis mis);
 
     /// For a point and its unit normal; null where nothing is known.
     const LightFactors* at(const vec3& position, const vec3& normal) const;

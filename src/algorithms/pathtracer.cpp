@@ -20,7 +20,7 @@ class Pathtracer : public Algorithm {
           roulette_(parameters) {}
 
     bool prepare(const Preparation& preparation) override {
-        return light_choice_.prepare(preparation, MAX_CAM_PATH_LENGTH);
+        return light_choice_.prepare(preparation, MAX_CAM_PATH_LENGTH, mis_);
     }
 
     vec3 radiance(Context& context, Ray ray) const override {

@@ -241,11 +241,11 @@ void bind_choice(nb::module_& m) {
         "there.");
 }
 
-using Slots = std::array<float, LightTree::WIDTH>;
+using SlotFactors = std::array<float, LightTree::WIDTH>;
 
-LightFactors make_factors(float triangles_share, const Slots& root,
-                          const std::array<Slots, LightTree::WIDTH>& below) {
-    const auto positive = [](const Slots& slots) {
+LightFactors make_factors(float triangles_share, const SlotFactors& root,
+                          const std::array<SlotFactors, LightTree::WIDTH>& below) {
+    const auto positive = [](const SlotFactors& slots) {
         return std::ranges::all_of(slots, [](float factor) { return factor > 0 && factor < INFINITE; });
     };
     if (!(triangles_share > 0 && triangles_share <= 1))
@@ -281,10 +281,10 @@ void bind_guide(nb::module_& m) {
                                  workers.in_order(count, work);
                                  return true;
                              }},
-                            max_edges);
+                            max_edges, Mis::power);
             },
             nb::arg("scene"), nb::arg("camera"), nb::arg("max_edges") = 10, nb::arg("threads") = 0,
-            "Learns from paths of that camera, as a render does before its first sample.")
+            "Learns from paths of that camera, as a render by Pathtracer does before its first sample.")
         .def(
             "at",
             [](const LightGuide& self, const std::array<float, 3>& position,

@@ -19,6 +19,7 @@ PathRecord replay_sample(Renderer& renderer, uint32_t x, uint32_t y, uint64_t sa
                                     " in an image of " + std::to_string(camera.width()) + "x" +
                                     std::to_string(camera.height()));
     }
+    const nb::gil_scoped_release release;
     return replay(renderer.scene(), renderer.sensor(), renderer.algorithm(), x, y, sample);
 }
 
@@ -118,6 +119,7 @@ void bind_replay(nb::module_& m) {
 }
 
 std::unique_ptr<TechniqueFilm> make_technique_film(Renderer& renderer, int max_edges) {
+    const nb::gil_scoped_release release;
     return std::make_unique<TechniqueFilm>(renderer.scene(), renderer.sensor(), renderer.algorithm(),
                                            max_edges, renderer.threads());
 }

@@ -177,6 +177,9 @@ void bind_renderer(nb::module_& m) {
              "The other arguments are those of `render`, but that the fraction of progress is a guess. "
              "Returns whether the bound\n"
              "is kept. How many samples a pixel has in the end depends on the samples alone.")
+        .def("prepare", nb::overload_cast<>(&Renderer::prepare), nb::call_guard<nb::gil_scoped_release>(),
+             "Lets the estimator learn what it wants to know before its first sample, as a render would: a "
+             "tenth of a second.\nReturns False where `cancel` ended it.")
         .def("cancel", &Renderer::cancel, "Makes a running render return, from another thread.")
         .def("mean", &mean,
              "float32 (height, width, 3): linear radiance, row 0 at the top; 0 where there is no sample.")
@@ -220,7 +223,8 @@ void bind_renderer(nb::module_& m) {
             "float64 (height, width, 2, 2, 3), or None without `split`: sums of what BSDF sampling and light "
             "sampling found,\n"
             "of each over at most two edges and over more, weighted by MIS. Together they are `sum`.")
-        .def_prop_ro("rays", &Renderer::rays, "Rays traced, shadow rays included.")
+        .def_prop_ro("rays", &Renderer::rays,
+                     "Rays traced, shadow rays included, without those of `prepare`.")
         .def_prop_ro("seconds", &Renderer::seconds, "Time spent in `render`.")
         .def_prop_ro("threads", &Renderer::threads)
         .def_prop_ro("error", &Renderer::error,

@@ -57,7 +57,6 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     const Clock::time_point start = Clock::now();
     const double seconds_before = seconds_;
     TileWorkers workers(threads_);
-    prepare(stop_);
     uint64_t done = samples, taken = 0;
     for (const Pixel& pixel : film_.pixels()) {
         done = std::min(done, pixel.count);
@@ -66,7 +65,8 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     samples_done_ = taken;
     uint64_t pass = 1;
     Clock::time_point looked = start;
-    while (done < samples && !stop_) {
+    const bool is_ready = done < samples && prepare(stop_);
+    while (is_ready && done < samples && !stop_) {
         const Clock::time_point pass_start = Clock::now();
         const bool may_stop = done > 0;
         done += std::min(pass, samples - done);
@@ -108,12 +108,12 @@ bool Renderer::render_until(double error_bound, double time_limit) {
         return false;
     const double seconds_before = seconds_ - seconds_since(start);
     TileWorkers workers(threads_);
-    prepare(stop_);
     uint64_t taken = 0;
     for (const Pixel& pixel : film_.pixels()) taken += pixel.count;
     samples_done_ = taken;
     bool complete = false;
-    while (!stop_) {
+    const bool is_ready = prepare(stop_);
+    while (is_ready && !stop_) {
         const std::vector<TileError> errors = look(workers);
         samples_expected_ = samples_at(errors, tiles_, error_bound);
         const std::vector<TileGoal> goals = next_goals(errors, error_bound);
@@ -138,6 +138,12 @@ bool Renderer::render_until(double error_bound, double time_limit) {
     return complete;
 }
 
+bool Renderer::prepare() {
+    const bool is_ready = prepare(stop_);
+    if (!is_ready) stop_ = false;
+    return is_ready;
+}
+
 bool Renderer::prepare(const std::atomic<bool>& cancelled) {
     const std::lock_guard lock(prepare_mutex_);
     if (is_prepared_) return true;
@@ -152,7 +158,8 @@ bool Renderer::prepare(const std::atomic<bool>& cancelled) {
 }
 
 const Algorithm& Renderer::algorithm() {
-    prepare(false);
+    static const std::atomic<bool> never = false;
+    prepare(never);
     return *algorithm_;
 }
 

@@ -53,6 +53,10 @@ class Renderer {
     /// end depends on the samples alone, not on threads or interruptions.
     bool render_until(double error_bound, double time_limit = INFINITE);
 
+    /// Lets the estimator learn what it wants to know before its first sample, as a render would. False where it was
+    /// cancelled.
+    bool prepare();
+
     /// Makes the running `render`, or else the next, return within a few milliseconds. From any thread.
     void cancel() { stop_ = true; }
 
@@ -66,7 +70,7 @@ class Renderer {
 
     const Scene& scene() const { return scene_; }
     const Sensor& sensor() const { return sensor_; }
-    /// Ready for estimates. From any thread.
+    /// Ready for estimates: learns first what it wants to know, where that has not been done. From any thread.
     const Algorithm& algorithm();
     /// While nothing renders; `read` is for all other times.
     const Film& film() const { return film_; }
@@ -94,6 +98,7 @@ class Renderer {
     /// Empty without `split`.
     const std::vector<ContributionSums>& contributions() const { return contributions_; }
 
+    /// Without those of the estimator's preparation.
     uint64_t rays() const { return rays_; }
     uint64_t invalid_count() const { return invalid_count_; }
     /// The first of them, at most MAX_INVALID_LISTED.
@@ -104,7 +109,6 @@ class Renderer {
     static constexpr size_t MAX_INVALID_LISTED = 1000;
 
   private:
-    /// What the estimator wants to know before its first sample. False where `cancelled` became true meanwhile.
     bool prepare(const std::atomic<bool>& cancelled);
     /// The tiles' errors, and the film's for others to see.
     std::vector<TileError> look(TileWorkers& workers);

@@ -42,14 +42,18 @@ class LightSampler {
 
     /// The tree over all triangles; empty where there are so few that their power decides.
     const LightTree& tree() const { return tree_; }
-    /// Probability of choosing from the tree where nothing is learned.
-    double triangles_share() const { return triangles_share_; }
+    /// Whether there are lights beside the tree's triangles that may be chosen.
+    bool has_others() const { return others_.total() > 0; }
     /// Number of a triangle of a light among the tree's emitters.
     uint32_t emitter(const Light* light, uint32_t triangle) const {
         return first_[light - lights_.data()] + triangle;
     }
 
   private:
+    double share_of_tree(const LightFactors* learned) const {
+        return !has_others() ? 1 : learned ? learned->triangles_share : triangles_share_;
+    }
+
     struct Emitter {
         const Light* light;
         uint32_t triangle;
@@ -61,7 +65,8 @@ class LightSampler {
     std::vector<uint32_t> first_;  // emitter of each light
     Distribution1D by_power_;
     LightTree tree_;
-    double triangles_share_ = 0;  // of the power, with which the tree is asked; 0 without one
+    Distribution1D others_;       // by power, of what is no triangle
+    double triangles_share_ = 0;  // of the power, with which the tree is asked where nothing is learned
     // Of the two halves of a rectangle neither is nearer than the other.
     static constexpr size_t WORTH_A_TREE = 3;
 };

@@ -101,7 +101,41 @@ def test_light_as_bright_or_dim_as_numbers_go(strength: float) -> None:
     for numbers in (factors.root, factors.below):
         assert np.isfinite(numbers).all()
         assert np.min(numbers) > 0
-    _core.Renderer(world, above(), "Pathtracer").render(4)
+    renderer = _core.Renderer(world, above(), "Pathtracer")
+    renderer.render(4)
+    if strength < 1e30:  # beyond, products of radiance and weights are no numbers by any choice of lights
+        assert renderer.invalid_count == 0
+
+
+@pytest.mark.parametrize("light_choice", ["learned", "tree"])
+@pytest.mark.parametrize("sky", [0.0, 1e-20, 1e-16, 1e-10])
+def test_a_sky_that_is_next_to_nothing(sky: float, light_choice: str) -> None:
+    world = two_rooms(_core.Sky(None, sky))
+    renderer = _core.Renderer(world, above(), "Pathtracer", {"light_choice": light_choice})
+    renderer.render(16)
+    assert renderer.invalid_count == 0
+
+
+def test_lamps_that_face_away_are_seldom_tried() -> None:
+    world = scene(
+        (hanging_lamp(-1).turned("x", 180).moved(y=2), lamp(100)),
+        (hanging_lamp(1).turned("x", 180).moved(y=2), lamp(100)),
+        (ground(6), diffuse(0.5)),
+        sky=_core.Sky(None, 1),
+    )
+    factors = _core.LightGuide(world, above()).at(LEFT, UP)
+    assert factors is not None
+    assert 0 < factors.triangles_share < 0.1
+
+
+def test_of_a_single_point() -> None:
+    """A scene seen through a pin hole has cells of no size, and places that are no numbers are in none."""
+    camera = _core.Camera((-1, 1.5, 4), (0, -1.5, -4), (0, 1, 0), 1e-30, 0, 1, True, 1, 1)
+    guide = _core.LightGuide(two_rooms(), camera, max_edges=2)
+    assert guide.at((np.nan, np.inf, 0.0), UP) is None
+    renderer = _core.Renderer(two_rooms(), camera, "Pathtracer")
+    renderer.render(4)
+    assert renderer.invalid_count == 0
 
 
 def test_the_same_whatever_the_threads() -> None:

@@ -110,8 +110,8 @@ MUTANTS = (
     Mutant(
         "lights left out that no path has seen shine",
         "algorithms/light_guide.cpp",
-        "PRIOR_SAMPLES * prior[i]",
-        "0 * prior[i]",
+        "std::max(std::sqrt(squares[i] / most), LEAST)",
+        "squares[i] / most > 0.1",
         (GUIDE,),
     ),
     Mutant(

@@ -34,7 +34,22 @@ def sphere_of_lamps() -> _core.Scene:
     return _core.Scene(meshes, [lamp(emissive_strength=float(s)) for s in strengths])
 
 
-ALL = SCENES | {"many_lamps": many_lamps, "sphere_of_lamps": sphere_of_lamps}
+def lamps_and_hardly_a_sky(strength: float) -> _core.Scene:
+    """Of a sky that is so much less than the lamps that shares of both round to 0 and 1."""
+    materials = [lamp(emissive_strength=1e15), lamp(emissive_strength=3e15)]
+    return _core.Scene([square(2, 1, 0), square(3, 1, 1)], materials, sky=_core.Sky(None, strength))
+
+
+ALL = SCENES | {
+    "many_lamps": many_lamps,
+    "sphere_of_lamps": sphere_of_lamps,
+}
+# Of these, shares of power are no numbers to compare with.
+EXTREME = {
+    "hardly_a_sky": lambda: lamps_and_hardly_a_sky(0.01),
+    "less_of_a_sky": lambda: lamps_and_hardly_a_sky(1e-8),
+    "black_sky": lambda: lamps_and_hardly_a_sky(0),
+}
 
 
 def triangles(scene: _core.Scene) -> list[tuple[int, int]]:
@@ -50,9 +65,9 @@ def probabilities(scene: _core.Scene, reference: NDArray[np.float32], kind: str)
 
 
 @pytest.mark.parametrize("kind", LIGHT_CHOICES)
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", ALL | EXTREME)
 def test_frequencies(name: str, kind: str) -> None:
-    scene = ALL[name]()
+    scene = (ALL | EXTREME)[name]()
     number = {which: n for n, which in enumerate(triangles(scene))}
     for reference in REFERENCES:
         expected = probabilities(scene, reference, kind)
@@ -68,7 +83,9 @@ def test_frequencies(name: str, kind: str) -> None:
         )
         counts = np.bincount(chosen + 1, minlength=len(number) + 1)
         all_of_them = np.concatenate([[max(failed, 0)], expected])
-        assert chi_square(counts, all_of_them * n).p > sidak(len(ALL) * len(LIGHT_CHOICES) * len(REFERENCES))
+        assert chi_square(counts, all_of_them * n).p > sidak(
+            len(ALL | EXTREME) * len(LIGHT_CHOICES) * len(REFERENCES)
+        )
         np.testing.assert_allclose(pdf[chosen >= 0], expected[chosen[chosen >= 0]], rtol=1e-5)
         assert not pdf[chosen < 0].any()
 

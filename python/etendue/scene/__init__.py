@@ -167,7 +167,7 @@ class Scene:
             )
         if not 0 <= sample < 2**63:
             raise EtendueError(f"sample {sample}: an index from 0 to 2^63 - 1 is needed")
-        path = _core.replay(self._renderer(config, 1, 0), x, y, sample)
+        path = _core.replay(self._renderer(config, 0, 0), x, y, sample)
         return Replay((x, y), sample, config.algorithm, path)
 
     def renderer(

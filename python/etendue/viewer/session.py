@@ -229,6 +229,7 @@ class Session:
             scene = self._scenes.get(config)
             live = Live(scene, scene.renderer(self._threads, films=self._films))
             stride = self._first_stride(config)
+            live.step(live.renderer.prepare)
             before = time.monotonic()
             live.step(lambda: live.renderer.render_coarse(stride))
             self._sample_seconds = (time.monotonic() - before) / max(live.renderer.samples_done, 1)
