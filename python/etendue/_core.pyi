@@ -427,11 +427,12 @@ class Renderer:
     Renders a scene into its film, as far as it is asked to, again and again.
     """
 
-    def __init__(self, scene: Scene, camera: Camera, algorithm: str, parameters: Mapping[str, bool | int | float | str] = {}, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0, first_sample: int = 0, films: Films | None = None) -> None:
+    def __init__(self, scene: Scene, camera: Camera, algorithm: str, parameters: Mapping[str, bool | int | float | str] = {}, sampler: str = 'sobol', filter: str = 'blackman_harris', seed: int = 0, threads: int = 0, first_sample: int = 0, films: Films | None = None, prepares: bool = True) -> None:
         """
         parameters: values of the algorithm's parameters by name. threads: 0 for all cores. first_sample: the
         index of each pixel's first sample. films: whose memory its film takes, and gives back with the last reference to the
-        renderer. Raises ValueError for names and values that do not fit.
+        renderer. prepares: whether the estimator may learn something before the first sample (see `prepare`). Raises
+        ValueError for names and values that do not fit.
         """
 
     def render(self, samples: int, progress: object | None = None, time_limit: float | None = None) -> bool:
@@ -453,6 +454,12 @@ class Renderer:
         """
         Lets the estimator learn what it wants to know before its first sample, as a render would: a tenth of a second.
         Returns False where `cancel` ended it.
+        """
+
+    @property
+    def learns(self) -> bool:
+        """
+        Whether the estimator has anything to learn in this scene, where it may.
         """
 
     def cancel(self) -> None:

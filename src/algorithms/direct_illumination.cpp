@@ -14,6 +14,7 @@ class DirectIllumination : public Algorithm {
     explicit DirectIllumination(const Parameters& parameters)
         : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")), light_choice_(parameters) {}
 
+    bool learns(const Scene& scene) const override { return light_choice_.learns(scene); }
     bool prepare(const Preparation& preparation) override {
         return light_choice_.prepare(preparation, std::min(MAX_CAM_PATH_LENGTH, 2), Mis::none);
     }

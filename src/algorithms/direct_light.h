@@ -44,7 +44,8 @@ class LightChoice {
             {"learned", "tree", "power"}};
     }
 
-    /// See Algorithm::prepare.
+    // See Algorithm.
+    bool learns(const Scene& scene) const { return learns_ && !scene.light_sampler().tree().empty(); }
     bool prepare(const Preparation& preparation, int max_edges, Mis mis) {
         return !learns_ || guide_.learn(preparation, max_edges, mis);
     }

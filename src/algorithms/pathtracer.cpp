@@ -19,6 +19,7 @@ class Pathtracer : public Algorithm {
           mis_(mis_of(parameters)),
           roulette_(parameters) {}
 
+    bool learns(const Scene& scene) const override { return light_choice_.learns(scene); }
     bool prepare(const Preparation& preparation) override {
         return light_choice_.prepare(preparation, MAX_CAM_PATH_LENGTH, mis_);
     }

@@ -19,7 +19,7 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const Camera& camera
                                         const std::map<std::string, ParameterValue>& parameters,
                                         const std::string& sampler, const std::string& filter, uint64_t seed,
                                         int threads, uint64_t first_sample,
-                                        const std::shared_ptr<Films>& films) {
+                                        const std::shared_ptr<Films>& films, bool prepares) {
     // A film takes its time.
     const nb::gil_scoped_release release;
     Renderer::Settings settings;
@@ -29,6 +29,7 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const Camera& camera
     settings.first_sample = first_sample;
     settings.threads = threads;
     settings.films = films;
+    settings.prepares = prepares;
     return std::make_unique<Renderer>(scene, camera, make_algorithm(algorithm, parameters), settings);
 }
 
@@ -156,11 +157,13 @@ void bind_renderer(nb::module_& m) {
             nb::arg("algorithm"), nb::arg("parameters") = std::map<std::string, ParameterValue>{},
             nb::arg("sampler") = "sobol", nb::arg("filter") = "blackman_harris", nb::arg("seed") = 0,
             nb::arg("threads") = 0, nb::arg("first_sample") = 0, nb::arg("films").none() = nb::none(),
+            nb::arg("prepares") = true,
             "parameters: values of the algorithm's parameters by name. threads: 0 for all cores. "
             "first_sample: the\n"
             "index of each pixel's first sample. films: whose memory its film takes, and gives back with the "
             "last reference to the\n"
-            "renderer. Raises ValueError for names and values that do not fit.")
+            "renderer. prepares: whether the estimator may learn something before the first sample (see "
+            "`prepare`). Raises\nValueError for names and values that do not fit.")
         .def("render", &render, nb::arg("samples"), nb::arg("progress") = nb::none(),
              nb::arg("time_limit") = nb::none(),
              "Brings every pixel to `samples` samples, going on from those it has, with the interpreter free "
@@ -180,6 +183,8 @@ void bind_renderer(nb::module_& m) {
         .def("prepare", nb::overload_cast<>(&Renderer::prepare), nb::call_guard<nb::gil_scoped_release>(),
              "Lets the estimator learn what it wants to know before its first sample, as a render would: a "
              "tenth of a second.\nReturns False where `cancel` ended it.")
+        .def_prop_ro("learns", &Renderer::learns,
+                     "Whether the estimator has anything to learn in this scene, where it may.")
         .def("cancel", &Renderer::cancel, "Makes a running render return, from another thread.")
         .def("mean", &mean,
              "float32 (height, width, 3): linear radiance, row 0 at the top; 0 where there is no sample.")

@@ -19,8 +19,8 @@ class Films {
     void settle(uint32_t width, uint32_t height);
 
   private:
-    // One for what is shown, one for what follows.
-    static constexpr size_t MOST = 2;
+    // One for what is shown, one for what follows, and for each the hurried picture before it.
+    static constexpr size_t MOST = 4;
 
     std::mutex mutex_;
     std::vector<Film> films_;  // all of one size

@@ -27,6 +27,7 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Alg
     : scene_(scene),
       sensor_{camera, Filter(settings.filter), settings.sampler, settings.seed},
       algorithm_(std::move(algorithm)),
+      is_prepared_(!settings.prepares || !algorithm_->learns(scene)),
       first_sample_(settings.first_sample),
       threads_(thread_count(settings.threads)),
       films_(settings.films),

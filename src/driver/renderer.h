@@ -27,6 +27,7 @@ class Renderer {
         uint64_t first_sample = 0;          // index of the first sample of each pixel
         int threads = 0;                    // 0: all
         std::shared_ptr<Films> films = {};  // where its film comes from and goes to; null: nowhere
+        bool prepares = true;  // false: the estimator learns nothing before, and has noise of another size
     };
     /// A sample whose radiance was not a finite number >= 0; it is not in the film's sums.
     struct InvalidSample {
@@ -53,6 +54,8 @@ class Renderer {
     /// end depends on the samples alone, not on threads or interruptions.
     bool render_until(double error_bound, double time_limit = INFINITE);
 
+    /// Whether the estimator has anything to learn in this scene.
+    bool learns() const { return algorithm_->learns(scene_); }
     /// Lets the estimator learn what it wants to know before its first sample, as a render would. False where it was
     /// cancelled.
     bool prepare();
@@ -124,7 +127,7 @@ class Renderer {
     Sensor sensor_;
     std::unique_ptr<Algorithm> algorithm_;
     std::mutex prepare_mutex_;
-    bool is_prepared_ = false;
+    bool is_prepared_;
     uint64_t first_sample_;
     int threads_;
     std::shared_ptr<Films> films_;

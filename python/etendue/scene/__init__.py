@@ -171,13 +171,18 @@ class Scene:
         return Replay((x, y), sample, config.algorithm, path)
 
     def renderer(
-        self, threads: int = 0, first_sample: int = 0, films: _core.Films | None = None
+        self,
+        threads: int = 0,
+        first_sample: int = 0,
+        films: _core.Films | None = None,
+        prepares: bool = True,
     ) -> _core.Renderer:
         """A renderer of what the scene file says, without samples yet; for who renders in steps of his own.
 
-        films: memory that renderers which follow each other share.
+        films: memory that renderers which follow each other share. prepares: False for a first picture at once, whose
+        estimator learns nothing before, and has other noise.
         """
-        return self._renderer(self.config, threads, first_sample, films)
+        return self._renderer(self.config, threads, first_sample, films, prepares)
 
     def empty_film(self) -> Film:
         """The film that `renderer` begins with: no samples, and where they are going to come from."""
@@ -290,7 +295,12 @@ class Scene:
         return resume.towards(resume.goal if spp is None else (first, first + int(spp)))
 
     def _renderer(
-        self, config: Config, threads: int, first_sample: int, films: _core.Films | None = None
+        self,
+        config: Config,
+        threads: int,
+        first_sample: int,
+        films: _core.Films | None = None,
+        prepares: bool = True,
     ) -> _core.Renderer:
         from .. import _core
 
@@ -306,6 +316,7 @@ class Scene:
                 threads,
                 first_sample % 2**64,
                 films,
+                prepares,
             )
         except ValueError as error:
             raise EtendueError(str(error)) from error

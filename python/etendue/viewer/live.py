@@ -19,10 +19,14 @@ from .status import State, Status
 
 @dataclass
 class Live:
-    """A scene on its way to a film. stride: of the last finished pass; 0: none yet."""
+    """A scene on its way to a film.
+
+    stride: of the last finished pass; 0: none yet. hurried: it shows something until another has learned.
+    """
 
     scene: Scene
     renderer: _core.Renderer
+    hurried: bool = False
     stride: int = 0
     seconds: float = 0.0
     since: float | None = None

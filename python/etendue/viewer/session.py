@@ -68,6 +68,8 @@ class Session:
         self._problem: str | None = None
         self._paused = self._aborted = self._closed = False
         self._live: Live | None = None
+        # What takes the place of what is shown when it has learned.
+        self._coming: Live | None = None
         self._look = Look()
         self._undeveloped = False
         self._picture: Picture | None = None
@@ -158,9 +160,9 @@ class Session:
         return [] if live is None else list(live.errors)
 
     def film(self) -> Film | None:
-        """The film as it is now; None: nothing is rendered yet."""
+        """The film as it is now; None: there is none yet."""
         live = self._live
-        return None if live is None else live.taken()
+        return None if live is None or live.hurried else live.taken()
 
     @property
     def status(self) -> Status:
@@ -184,6 +186,8 @@ class Session:
         """Ends the running pass, unless it is the first: however fast changes come, each shows something."""
         if self._live is not None and self._live.stride:
             self._live.renderer.cancel()
+        if self._coming is not None:
+            self._coming.renderer.cancel()
         self._changed.notify_all()
 
     # The render's thread.
@@ -227,15 +231,21 @@ class Session:
         else:
             self._finish(version, State.LOADING)
             scene = self._scenes.get(config)
-            live = Live(scene, scene.renderer(self._threads, films=self._films))
             stride = self._first_stride(config)
-            live.step(live.renderer.prepare)
+            # Whoever changed something is waiting: what is learned comes after the first picture.
+            live = first = Live(scene, scene.renderer(self._threads, films=self._films, prepares=False))
+            first.hurried = first.renderer.learns
             before = time.monotonic()
-            live.step(lambda: live.renderer.render_coarse(stride))
-            self._sample_seconds = (time.monotonic() - before) / max(live.renderer.samples_done, 1)
+            first.step(lambda: first.renderer.render_coarse(stride))
+            self._sample_seconds = (time.monotonic() - before) / max(first.renderer.samples_done, 1)
             with self._changed:
-                self._live = live
-                self._advanced(live, stride)
+                self._live = first
+                self._advanced(first, stride)
+            if first.hurried:
+                self._finish(version, State.RENDERING)
+                live = Live(scene, scene.renderer(self._threads, films=self._films))
+                if not self._takes_over(version, live, stride):
+                    return
         self._finish(version, State.RENDERING)
         while live.stride > 1:
             stride = live.stride // 2
@@ -250,9 +260,25 @@ class Session:
             live.note_error()
             self._finish(version, State.DONE)
 
+    def _takes_over(self, version: int, live: Live, stride: int) -> bool:
+        """Shows what has learned instead of the hurried picture before it. False where something else is wanted."""
+        self._coming = live
+        learned = self._step(version, live, live.renderer.prepare)
+        if learned and self._step(version, live, lambda: live.renderer.render_coarse(stride)):
+            with self._changed:
+                self._live, self._coming = live, None
+                self._advanced(live, stride)
+            return True
+        self._coming = None
+        return False
+
     def _goes_on(self, live: Live, version: int, config: Config) -> bool:
         """Whether what is there is part of what is wanted."""
-        if self._fresh == version or _of_samples(live.scene.config) != _of_samples(config):
+        if (
+            self._coming is not None
+            or self._fresh == version
+            or _of_samples(live.scene.config) != _of_samples(config)
+        ):
             return False
         return config.beauty_render or config.framebuffer.sppx >= int(live.renderer.sample_count().max())
 
