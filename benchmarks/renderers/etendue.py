@@ -66,6 +66,12 @@ class Renderer:
             threads=self.threads,
         )
 
+    def prepared(self) -> Any:
+        """A renderer of seed 0 that has only its samples to take yet."""
+        renderer = self._renderer(0)
+        renderer.prepare()
+        return renderer
+
     def record(self, spp: int) -> Any:
         """The rays of the image that `render(spp, 0)` makes."""
         return _core.RayRecord(self._renderer(0), spp)
