@@ -24,6 +24,7 @@ from etendue.viewer.status import State, Status
 from etendue.viewer.viewer import Viewer
 
 pytestmark = pytest.mark.usefixtures("lit_scene")
+CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 
 
 @pytest.fixture
@@ -81,6 +82,21 @@ def test_more_samples_go_on_and_fewer_begin_again(session: Session) -> None:
         film = session.film()
         assert film is not None
         assert np.array_equal(film.sum, etendue.load(shown.config).render().sum)
+
+
+def test_what_is_shown_before_it_has_learned_gives_no_film(session: Session) -> None:
+    """And more samples asked for meanwhile do not go on from there."""
+    shown = Document(etendue.read_config(CONFIGS / "a04_mis.json"))
+    shown.set({("framebuffer", "res_w"): 32, ("framebuffer", "res_h"): 24, ("framebuffer", "sppx"): 4})
+    session.show(shown.config)
+    wait(lambda: session.renderer is not None)
+    for spp in (5, 6):
+        shown.set({("framebuffer", "sppx"): spp})
+        session.show(shown.config)
+    wait(lambda: session.status.state is State.DONE and session.status.goal == 6)
+    film = session.film()
+    assert film is not None
+    assert np.array_equal(film.sum, etendue.load(shown.config).render().sum)
 
 
 def test_every_change_shows_something_however_fast_they_come(session: Session) -> None:

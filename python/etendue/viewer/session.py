@@ -274,11 +274,7 @@ class Session:
 
     def _goes_on(self, live: Live, version: int, config: Config) -> bool:
         """Whether what is there is part of what is wanted."""
-        if (
-            self._coming is not None
-            or self._fresh == version
-            or _of_samples(live.scene.config) != _of_samples(config)
-        ):
+        if live.hurried or self._fresh == version or _of_samples(live.scene.config) != _of_samples(config):
             return False
         return config.beauty_render or config.framebuffer.sppx >= int(live.renderer.sample_count().max())
 
