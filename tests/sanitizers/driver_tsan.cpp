@@ -36,11 +36,13 @@ Material material(const char* type, float emission) {
 Scene::Data world(float radiance) {
     Scene::Data data;
     const std::vector<uint8_t> opacity{0, 255, 255, 0};
-    data.textures.push_back(std::make_shared<Texture>(2, 2, 1, opacity, false));
+    data.textures.push_back(std::make_shared<Texture>(2, 2, 1, opacity.data(), false));
     data.materials = {material("diffuse", 0), material("light", radiance), material("glass", 0)};
     data.materials[2].cutout_texture = data.textures[0].get();
     data.meshes = {quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, 0),
                    quad({-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}, 1),
+                   // So many triangles shine that there is something to learn about them.
+                   quad({-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}, 1),
                    quad({-1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 1, 0}, 2)};
     data.sky.emplace();
     return data;
