@@ -103,9 +103,9 @@ class Algorithm {
     virtual ~Algorithm() = default;
     /// Whether `prepare` has anything to do for a scene.
     virtual bool learns(const Scene&) const { return false; }
-    /// Called once, before all that is below; again where it returned false, which it does where it was cut short.
-    /// Learned from random numbers that an estimate uses, anything would bias that estimate; learned from anything but
-    /// the scene, the camera and the parameters, a render would not come out the same again.
+    /// Called once where it `learns`, before all that is below; again where it returned false, which it does where it was
+    /// cut short. Learned from random numbers that an estimate uses, anything would bias that estimate; learned from
+    /// anything but the scene, the camera and the parameters, a render would not come out the same again.
     virtual bool prepare(const Preparation&) { return true; }
     /// One unbiased estimate of the radiance along a camera ray. Called by many threads at once.
     virtual vec3 radiance(Context& context, Ray ray) const = 0;

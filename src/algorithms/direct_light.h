@@ -47,7 +47,7 @@ class LightChoice {
     // See Algorithm.
     bool learns(const Scene& scene) const { return learns_ && !scene.light_sampler().tree().empty(); }
     bool prepare(const Preparation& preparation, int max_edges, Mis mis) {
-        return !learns_ || guide_.learn(preparation, max_edges, mis);
+        return guide_.learn(preparation, max_edges, mis);
     }
 
     LightSampler::Kind kind() const { return kind_; }

@@ -1,4 +1,4 @@
-// Where light does arrive from, region by region, learned before a render from a few thousand paths.
+// Where light does arrive from, region by region, learned from paths of its own before a render.
 //
 // The light tree knows how much of each light could arrive at a point, but of no wall between the two, nor of the
 // surface there. Here the scene is cut into cells, by position and by the side that surfaces face, and each learns by
