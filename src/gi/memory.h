@@ -11,6 +11,13 @@
 
 namespace etendue {
 
+/// Asks for the line of the cache at a place, to be there when it is read.
+inline void prefetch(const void* place) {
+    __builtin_prefetch(place);
+    // Or else GCC takes functions that do no more than this for such without effect, and drops calls of them.
+    asm volatile("");
+}
+
 /// Large arrays in huge pages, as otherwise most reads of a ray miss the TLB; and what a vector grows by is left as it
 /// is, to be written by many threads at once rather than zeroed by one.
 template <class T>
@@ -26,10 +33,9 @@ struct BulkAllocator {
     }
 
     T* allocate(size_t count) {
-        const size_t page = count * sizeof(T) >= 2 * HUGE_PAGE ? HUGE_PAGE : alignof(T);
-        if (page == alignof(T)) return std::allocator<T>().allocate(count);
-        const size_t bytes = (count * sizeof(T) + page - 1) / page * page;
-        void* const place = std::aligned_alloc(page, bytes);
+        if (!is_large(count)) return std::allocator<T>().allocate(count);
+        const size_t bytes = (count * sizeof(T) + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
+        void* const place = std::aligned_alloc(HUGE_PAGE, bytes);
         if (!place) throw std::bad_alloc();
 #if defined(__linux__)
         madvise(place, bytes, MADV_HUGEPAGE);  // a wish: without it the pages are small
@@ -37,7 +43,7 @@ struct BulkAllocator {
         return static_cast<T*>(place);
     }
     void deallocate(T* place, size_t count) {
-        if (count * sizeof(T) >= 2 * HUGE_PAGE) {
+        if (is_large(count)) {
             std::free(place);
         } else {
             std::allocator<T>().deallocate(place, count);
@@ -55,6 +61,8 @@ struct BulkAllocator {
 
   private:
     static constexpr size_t HUGE_PAGE = size_t{2} << 20;
+    // A scene has some dozens of arrays, so what is left of a page that is not full does no harm.
+    static bool is_large(size_t count) { return count * sizeof(T) >= HUGE_PAGE / 8; }
 };
 
 }  // namespace etendue

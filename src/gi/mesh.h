@@ -54,8 +54,8 @@ struct Mesh {
 
     /// Asks for what a hit of the triangle will want to know.
     void prefetch(uint32_t triangle) const {
-        __builtin_prefetch(&facets[triangle]);
-        if (!shading.empty()) __builtin_prefetch(&shading[triangle]);
+        etendue::prefetch(&facets[triangle]);
+        if (!shading.empty()) etendue::prefetch(&shading[triangle]);
     }
 
     /// The texture coordinates at barycentrics (b1, b2); the barycentrics themselves where the mesh has none.

@@ -111,7 +111,7 @@ void Texture::prefetch(const vec2& uv) const {
     std::visit(
         [&](const auto& image) {
             for (const uint32_t line : {y.first, y.second})
-                for (const uint32_t column : {x.first, x.second}) __builtin_prefetch(&image.at(column, line));
+                for (const uint32_t column : {x.first, x.second}) etendue::prefetch(&image.at(column, line));
         },
         image_);
 }
