@@ -241,18 +241,27 @@ void bind_choice(nb::module_& m) {
         "there.");
 }
 
-using SlotFactors = std::array<float, LightTree::WIDTH>;
+using OfSlots = std::array<float, LightTree::WIDTH>;
 
-LightFactors make_factors(float triangles_share, const SlotFactors& root,
-                          const std::array<SlotFactors, LightTree::WIDTH>& below) {
-    const auto positive = [](const SlotFactors& slots) {
+LightFactors make_factors(float triangles_share, const OfSlots& root,
+                          const std::array<OfSlots, LightTree::WIDTH>& below) {
+    const auto positive = [](const OfSlots& slots) {
         return std::ranges::all_of(slots, [](float factor) { return factor > 0 && factor < INFINITE; });
     };
     if (!(triangles_share > 0 && triangles_share <= 1))
         throw std::invalid_argument("triangles_share: above 0 and at most 1 is needed");
     if (!positive(root) || !std::ranges::all_of(below, positive))
         throw std::invalid_argument("factors: finite numbers above 0 are needed");
-    return {triangles_share, {root, below}};
+    LightFactors factors{triangles_share, {LightTree::SlotFactors(root), {}}};
+    std::ranges::transform(below, factors.tree.below.begin(),
+                           [](const OfSlots& slots) { return LightTree::SlotFactors(slots); });
+    return factors;
+}
+
+OfSlots of_slots(const LightTree::SlotFactors& factors) {
+    OfSlots all;
+    for (uint32_t i = 0; i < LightTree::WIDTH; ++i) all[i] = factors[i];
+    return all;
 }
 
 void bind_guide(nb::module_& m) {
@@ -266,8 +275,12 @@ void bind_guide(nb::module_& m) {
             "others. root: 16 numbers,\nfor the slots of the root. below: 16 of 16, for the slots of what is "
             "below each. Raises ValueError unless all are > 0.")
         .def_ro("triangles_share", &LightFactors::triangles_share)
-        .def_prop_ro("root", [](const LightFactors& f) { return f.tree.root; })
-        .def_prop_ro("below", [](const LightFactors& f) { return f.tree.below; });
+        .def_prop_ro("root", [](const LightFactors& f) { return of_slots(f.tree.root); })
+        .def_prop_ro("below", [](const LightFactors& f) {
+            std::array<OfSlots, LightTree::WIDTH> all;
+            std::ranges::transform(f.tree.below, all.begin(), of_slots);
+            return all;
+        });
     nb::class_<LightGuide>(m, "LightGuide",
                            "Where light does arrive from, region by region (`light_choice`: learned).")
         .def(

@@ -11,7 +11,7 @@
 namespace etendue {
 
 /// What was learned about the lights of a region of the scene.
-struct LightFactors {
+struct alignas(64) LightFactors {
     float triangles_share;  // probability of choosing a triangle rather than another light; in (0, 1]
     LightTree::Factors tree;
 };

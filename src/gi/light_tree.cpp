@@ -159,6 +159,14 @@ uint32_t LightTree::build(std::span<const EmitterBounds> emitters, std::span<uin
     return index;
 }
 
+LightTree::SlotFactors::SlotFactors(const std::array<float, WIDTH>& factors) {
+    const float most = *std::ranges::max_element(factors);
+    for (uint32_t i = 0; i < WIDTH; ++i) {
+        const uint32_t below_one = ONE - std::bit_cast<uint32_t>(factors[i] / most);
+        codes_[i] = static_cast<uint8_t>(std::min((below_one + (1u << (SHIFT - 1))) >> SHIFT, 255u));
+    }
+}
+
 inline LightTree::Importances LightTree::importances(const Node& node, const vec3& reference) {
     Importances out;
     for (uint32_t i = 0; i < WIDTH; ++i) {

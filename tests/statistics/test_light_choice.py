@@ -166,6 +166,22 @@ def test_lamps_brighter_than_numbers(kind: str, strength: float) -> None:
         assert np.isfinite(probabilities(world, reference, kind)).all()
 
 
+def test_factors_keep_their_ratios() -> None:
+    rng = np.random.default_rng(3)
+    slots = np.exp2(rng.uniform(-7.5, 0, (17, 16))).astype(np.float32)
+    slots[:, 0] = 1
+    slots[1] *= 1e30
+    slots[2, 1:] = 1e-30
+    learned = _core.LightFactors(0.5, slots[0].tolist(), slots[1:].tolist())
+    kept = np.array([learned.root, *learned.below])
+    expected = slots / slots.max(axis=1, keepdims=True)
+    assert kept[[0, *range(3, 17)]] == pytest.approx(expected[[0, *range(3, 17)]], rel=1 / 63)
+    assert kept[1] == pytest.approx(expected[1], rel=1 / 63)
+    # What is left of none at all, so that no light is left out.
+    assert (kept[2, 1:] > 0).all()
+    assert kept[2, 1:] == pytest.approx(2.0**-8, rel=0.05)
+
+
 def test_powers() -> None:
     """
     Luminance of the radiance x pi x area; of a sky, x 4 pi x the cross-section of the sphere around the
