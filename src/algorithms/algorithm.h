@@ -49,16 +49,24 @@ class Context {
     Context(const Scene& scene, Sampler sampler, Observer* observer = nullptr)
         : scene(scene), sampler(sampler), observer_(observer) {}
 
-    /// What the path's next edge ends at.
-    SurfaceHit intersect(const Ray& ray) {
+    /// What the path's next edge ends at. `meanwhile`: what else is to be done, once the ray is traced and what is known
+    /// of the surface that it hit comes from memory.
+    template <class Work>
+    SurfaceHit intersect(const Ray& ray, const Work& meanwhile) {
         ++rays;
-        const SurfaceHit hit = scene.intersect(ray, [this] { sampler.prepare(); });
+        const SurfaceHit hit = scene.intersect(ray, [&] {
+            sampler.prepare();
+            meanwhile();
+        });
+        if (!hit.valid) meanwhile();
         if (observer_) observer_->edge(ray, hit);
         return hit;
     }
-    bool visible(const SurfaceHit& hit, const LightSample& sample) {
+    SurfaceHit intersect(const Ray& ray) {
+        return intersect(ray, [] {});
+    }
+    bool visible(const Ray& ray) {
         ++rays;
-        const Ray ray = shadow_ray(hit, sample);
         const bool visible = !scene.occluded(ray);
         if (observer_) observer_->shadow_ray(ray, visible);
         return visible;

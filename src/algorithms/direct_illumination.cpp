@@ -26,8 +26,9 @@ class DirectIllumination : public Algorithm {
 
         context.sampler.start_vertex(1);
         if (!hit.is_type(BRDF_SPECULAR)) {
-            return emitted + sample_direct_light(context, hit, vec3(1), 2, light_choice_.kind(),
-                                                 light_choice_.learned(hit), Mis::none);
+            return emitted +
+                   light_over(context, connect_to_light(context, hit, vec3(1), 2, light_choice_.kind(),
+                                                        light_choice_.learned(hit), Mis::none));
         }
         const auto bounce = context.bounce(hit);
         if (!bounce) return emitted;

@@ -89,47 +89,63 @@ inline float bsdf_sampling_weight(Mis mis, float bsdf_pdf, float light_pdf) {
     return 1;
 }
 
-/// A light chosen for a vertex, and the numbers that are left for a place on it.
+/// A light chosen for a vertex, if there was one to choose, and the number that is left for a place on it.
 struct ChosenLight {
-    LightSampler::Choice choice;
-    vec2 u;
+    std::optional<LightSampler::Choice> choice;
+    float across;
 };
 
-inline std::optional<ChosenLight> choose_light(Context& context, const SurfaceHit& hit,
-                                               LightSampler::Kind kind, const LightFactors* learned) {
+inline ChosenLight choose_light(Context& context, const SurfaceHit& hit, LightSampler::Kind kind,
+                                const LightFactors* learned) {
     const double finer_digits = context.sampler.next_1d();
     const vec2 u = context.sampler.next_2d();
     // One number chooses the light and the place along it, so that samples which are stratified over [0, 1) are so over
     // each light too. What of its digits the choice uses up, others make up for.
-    const auto choice =
-        context.scene.sample_light_source(kind, hit.point.position, u.x + finer_digits * 0x1p-24, learned);
-    if (!choice) return std::nullopt;
-    return ChosenLight{*choice, {choice->remapped, u.y}};
+    return {
+        context.scene.sample_light_source(kind, hit.point.position, u.x + finer_digits * 0x1p-24, learned),
+        u.y};
 }
 
-/// What that light brings over one shadow ray, weighted, at the end of a path of `edges` rays with the throughput of
-/// its vertex.
-inline vec3 light_from(Context& context, const SurfaceHit& hit, const ChosenLight& chosen,
-                       const vec3& throughput, int edges, Mis mis) {
-    const auto& [choice, u] = chosen;
-    const auto sample = choice.light->sample_Li(hit.point.position, choice.triangle, u, mis != Mis::none);
-    if (!sample) return vec3(0);
+/// Light that arrives at a vertex if nothing is between: the question, and what is found then.
+struct Connection {
+    bool exists = false;
+    Ray shadow_ray;
+    Contribution found;
+};
+
+/// To a place on a chosen light, at the end of a path of `edges` rays with the throughput of its vertex.
+inline Connection connect(const SurfaceHit& hit, const LightSampler::Choice& choice, float across,
+                          const vec3& throughput, int edges, Mis mis) {
+    Connection connection;
+    const auto sample = choice.light->sample_Li(hit.point.position, choice.triangle,
+                                                {choice.remapped, across}, mis != Mis::none);
+    if (!sample) return connection;
     const vec3 reflected = hit.f(sample->wi) * std::abs(glm::dot(sample->wi, hit.frame.n)) * sample->radiance;
-    if (is_black(reflected) || !context.visible(hit, *sample)) return vec3(0);
-    Contribution found{Technique::light_sampling, edges};
+    if (is_black(reflected)) return connection;
+    connection.exists = true;
+    connection.shadow_ray = shadow_ray(hit, *sample);
+    Contribution& found = connection.found;
+    found.technique = Technique::light_sampling;
+    found.edges = edges;
     found.pdf = choice.pmf * sample->pdf;
     found.other_pdf = hit.pdf(sample->wi);
     found.weight = light_sampling_weight(mis, found.pdf, found.other_pdf);
     found.unweighted = throughput * reflected / found.pdf;
-    return context.light(found);
+    return connection;
 }
 
-/// Both; 0 at delta surfaces, where a sampled light could never be seen.
-inline vec3 sample_direct_light(Context& context, const SurfaceHit& hit, const vec3& throughput, int edges,
-                                LightSampler::Kind kind, const LightFactors* learned, Mis mis) {
-    if (hit.is_type(BRDF_SPECULAR)) return vec3(0);
-    const auto chosen = choose_light(context, hit, kind, learned);
-    return chosen ? light_from(context, hit, *chosen, throughput, edges, mis) : vec3(0);
+/// The same, to a light that is chosen first. None at delta surfaces, where a sampled light could never be seen.
+inline Connection connect_to_light(Context& context, const SurfaceHit& hit, const vec3& throughput, int edges,
+                                   LightSampler::Kind kind, const LightFactors* learned, Mis mis) {
+    if (hit.is_type(BRDF_SPECULAR)) return {};
+    const auto [choice, across] = choose_light(context, hit, kind, learned);
+    return choice ? connect(hit, *choice, across, throughput, edges, mis) : Connection();
+}
+
+/// What arrives over a connection, for which its shadow ray is traced.
+inline vec3 light_over(Context& context, const Connection& connection) {
+    return connection.exists && context.visible(connection.shadow_ray) ? context.light(connection.found)
+                                                                       : vec3(0);
 }
 
 }  // namespace etendue

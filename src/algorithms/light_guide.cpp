@@ -86,8 +86,9 @@ struct CellSquares {
             out.triangles_share =
                 static_cast<float>(std::clamp(triangles / (triangles + others), LEAST, 1 - LEAST));
         }
-        out.tree.root = relative_roots(root);
-        for (size_t i = 0; i < WIDTH; ++i) out.tree.below[i] = relative_roots(below[i]);
+        out.tree.root = LightTree::SlotFactors(relative_roots(root));
+        for (size_t i = 0; i < WIDTH; ++i)
+            out.tree.below[i] = LightTree::SlotFactors(relative_roots(below[i]));
         return out;
     }
 };
@@ -167,13 +168,14 @@ class Explorer {
     void try_light(Context& context, const SurfaceHit& hit, std::vector<Trial>& trials) const {
         const LightTree& tree = context.scene.light_sampler().tree();
         Trial trial{hit.point.position, hit.frame.n, true, std::nullopt, 0, 0};
-        if (const auto chosen = choose_light(context, hit, LightSampler::Kind::tree, &factors_)) {
-            const auto& [light, triangle, pmf, remapped] = chosen->choice;
-            trial.estimate = luminance(light_from(context, hit, *chosen, vec3(1), 2, mis_));
+        const auto [choice, across] = choose_light(context, hit, LightSampler::Kind::tree, &factors_);
+        if (choice) {
+            trial.estimate = luminance(light_over(context, connect(hit, *choice, across, vec3(1), 2, mis_)));
             if (!std::isfinite(trial.estimate)) return;
-            trial.of_triangles = light->mesh() != nullptr;
+            trial.of_triangles = choice->light->mesh() != nullptr;
             if (trial.of_triangles) {
-                trial.slots = tree.slots(context.scene.light_sampler().emitter(light, triangle));
+                trial.slots =
+                    tree.slots(context.scene.light_sampler().emitter(choice->light, choice->triangle));
                 trial.importance = tree.importance(hit.point.position);
             }
         }

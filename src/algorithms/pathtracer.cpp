@@ -32,9 +32,13 @@ class Pathtracer : public Algorithm {
         const LightFactors* prev_learned = nullptr;
         float prev_pdf = 0;
         bool prev_delta = true;
+        // To a light from there, whose shadow ray is traced only when the next surface is being fetched from memory.
+        Connection connection;
         for (int depth = 1;; ++depth) {
             context.sampler.start_vertex(depth);
-            const SurfaceHit hit = context.intersect(ray);
+            const SurfaceHit hit =
+                context.intersect(ray, [&] { radiance += light_over(context, connection); });
+            connection.exists = false;
             // Light found by chance, against the pdf of having sampled it on purpose from the vertex before.
             if (hit.is_light()) {
                 Contribution found{Technique::bsdf_sampling, depth, throughput * hit.Le()};
@@ -49,8 +53,8 @@ class Pathtracer : public Algorithm {
 
             // Light sampled on purpose, one edge further.
             const LightFactors* const learned = light_choice_.learned(hit);
-            radiance +=
-                sample_direct_light(context, hit, throughput, depth + 1, light_choice_.kind(), learned, mis_);
+            connection =
+                connect_to_light(context, hit, throughput, depth + 1, light_choice_.kind(), learned, mis_);
 
             // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
             const auto bounce = context.bounce(hit);
@@ -66,7 +70,7 @@ class Pathtracer : public Algorithm {
             prev_delta = bounce->is_delta();
             ray = hit.ray_towards(bounce->wi);
         }
-        return radiance;
+        return radiance + light_over(context, connection);
     }
 
     static std::vector<Parameter> parameters() {

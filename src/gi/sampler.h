@@ -120,9 +120,13 @@ class Sampler {
     }
 
     uint32_t next() {
-        if (used_ == DRAWS_AT_ONCE) draw();
+        if (used_ == DRAWS_AT_ONCE) [[unlikely]]
+            draw_more();
         return used_++;
     }
+
+    /// Rare, so in one place.
+    [[gnu::noinline]] void draw_more() { draw(); }
 
     void draw() {
         for (uint32_t i = 0; i < DRAWS_AT_ONCE; ++i) {

@@ -201,8 +201,8 @@ MUTANTS = (
     Mutant(
         "shadows forgotten",
         "algorithms/direct_light.h",
-        "!context.visible(hit, *sample)",
-        "false",
+        "context.visible(connection.shadow_ray)",
+        "true",
         (ANALYTIC, "-k", "two_lamps"),
     ),
     Mutant(
