@@ -339,6 +339,10 @@ class LightGuide:
         Learns from paths of that camera, as a render by Pathtracer does before its first sample.
         """
 
+    @staticmethod
+    def paths(camera: Camera) -> int:
+        """How many paths it traces for that."""
+
     def at(self, position: Sequence[float], normal: Sequence[float]) -> LightFactors:
         """
         The LightFactors for a point and its unit normal; None where nothing is known.

@@ -210,32 +210,37 @@ float extent(const std::vector<Trial>& trials, vec3& lower) {
 bool LightGuide::learn(const Preparation& preparation, int max_edges, Mis mis) {
     if (preparation.scene.light_sampler().tree().empty()) return true;
     const Explorer explorer(preparation, max_edges, mis);
-    constexpr uint32_t PATHS_AT_ONCE = 256;
-    std::vector<std::vector<Trial>> parts(PATHS / PATHS_AT_ONCE);
-    const bool complete = preparation.for_each(parts.size(), [&](uint32_t part) {
-        parts[part] = explorer.trials(part * PATHS_AT_ONCE, PATHS_AT_ONCE);
-    });
-    if (!complete) return false;
-    // In the order of the paths, so that sums do not depend on threads.
-    std::vector<Trial> trials;
-    for (const auto& part : parts) trials.insert(trials.end(), part.begin(), part.end());
-    if (trials.empty()) return true;
-
-    constexpr float SMALL = 16, LARGE = 4;  // cells along the longest side of what was seen
-    vec3 lower(0);
-    const float side = std::clamp(extent(trials, lower), 1e-30f, 1e30f);
-    small_ = Cells(lower, side / SMALL);
-    large_ = Cells(lower, side / LARGE);
+    constexpr float SMALL = 16, LARGE = 4;  // cells along the longest side of what the first round sees
+    // In rounds, so that not all trials are kept at once.
+    constexpr uint32_t PATHS_A_ROUND = FEWEST_PATHS, PATHS_AT_ONCE = 256;
+    Cells small, large;
     std::vector<CellTrials> in_small, in_large;
     std::vector<uint32_t> around;  // the large cell of each small one
-    for (const Trial& trial : trials) {
-        const uint32_t small = small_.find_or_add(trial.position, trial.normal);
-        const uint32_t large = large_.find_or_add(trial.position, trial.normal);
-        in_small.resize(small_.count());
-        in_large.resize(large_.count());
-        around.resize(small_.count(), large);
-        in_small[small].add(trial);
-        in_large[large].add(trial);
+    for (uint32_t first = 0; first < paths(preparation.camera); first += PATHS_A_ROUND) {
+        std::vector<std::vector<Trial>> parts(PATHS_A_ROUND / PATHS_AT_ONCE);
+        const bool complete = preparation.for_each(parts.size(), [&](uint32_t part) {
+            parts[part] = explorer.trials(first + part * PATHS_AT_ONCE, PATHS_AT_ONCE);
+        });
+        if (!complete) return false;
+        // In the order of the paths, so that sums do not depend on threads.
+        std::vector<Trial> trials;
+        for (const auto& part : parts) trials.insert(trials.end(), part.begin(), part.end());
+        if (trials.empty()) continue;
+        if (around.empty()) {
+            vec3 lower(0);
+            const float side = std::clamp(extent(trials, lower), 1e-30f, 1e30f);
+            small = Cells(lower, side / SMALL);
+            large = Cells(lower, side / LARGE);
+        }
+        for (const Trial& trial : trials) {
+            const uint32_t small_cell = small.find_or_add(trial.position, trial.normal);
+            const uint32_t large_cell = large.find_or_add(trial.position, trial.normal);
+            in_small.resize(small.count());
+            in_large.resize(large.count());
+            around.resize(small.count(), large_cell);
+            in_small[small_cell].add(trial);
+            in_large[large_cell].add(trial);
+        }
     }
     std::vector<CellSquares> of_large;
     for (const CellTrials& cell : in_large) {
@@ -245,6 +250,8 @@ bool LightGuide::learn(const Preparation& preparation, int max_edges, Mis mis) {
     for (size_t i = 0; i < in_small.size(); ++i) {
         of_small_.push_back(in_small[i].squares(of_large[around[i]]).factors(explorer.triangles_share()));
     }
+    small_ = std::move(small);
+    large_ = std::move(large);
     return true;
 }
 

@@ -10,8 +10,10 @@
 // No light is ever left out, so what is learned moves noise, never the picture.
 #pragma once
 
+#include <bit>
 #include <vector>
 
+#include "gi/camera.h"
 #include "gi/light_sampler.h"
 
 namespace etendue {
@@ -21,16 +23,23 @@ enum class Mis;
 
 class LightGuide {
   public:
-    /// Traces the beginnings of PATHS paths of up to `max_edges` edges, always the same ones. False, with nothing
-    /// learned, where it was cut short. To be called once it has learned nothing yet.
+    /// Traces the beginnings of paths of up to `max_edges` edges, always the same ones. False, with nothing learned,
+    /// where it was cut short. To be called once it has learned nothing yet.
     bool learn(const Preparation& preparation, int max_edges, Mis mis);
 
     /// For a point and its unit normal; null where nothing is known.
     const LightFactors* at(const vec3& position, const vec3& normal) const;
 
-    static constexpr uint32_t PATHS = 1 << 15;
+    /// How many paths are traced for a picture: about one for every two pixels, so that it always takes a fraction of a
+    /// sample a pixel, but where there are few.
+    static uint32_t paths(const Camera& camera) {
+        const uint64_t pixels = uint64_t{camera.width()} * camera.height();
+        return std::bit_floor(static_cast<uint32_t>(std::clamp(pixels / 2, FEWEST_PATHS, MOST_PATHS)));
+    }
 
   private:
+    static constexpr uint64_t FEWEST_PATHS = 1 << 15, MOST_PATHS = 1 << 19;
+
     /// Numbers of cells by position and normal: cubes of one size for each of the six sides that normals may face.
     class Cells {
       public:

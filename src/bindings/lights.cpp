@@ -298,6 +298,7 @@ void bind_guide(nb::module_& m) {
             },
             nb::arg("scene"), nb::arg("camera"), nb::arg("max_edges") = 10, nb::arg("threads") = 0,
             "Learns from paths of that camera, as a render by Pathtracer does before its first sample.")
+        .def_static("paths", &LightGuide::paths, nb::arg("camera"), "How many paths it traces for that.")
         .def(
             "at",
             [](const LightGuide& self, const std::array<float, 3>& position,

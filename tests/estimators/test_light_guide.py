@@ -138,14 +138,29 @@ def test_of_a_single_point() -> None:
     assert renderer.invalid_count == 0
 
 
-def test_the_same_whatever_the_threads() -> None:
+@pytest.mark.parametrize("size", [16, 400], ids=["one-round", "two-rounds"])
+def test_the_same_whatever_the_threads(size: int) -> None:
     world = two_rooms(_core.Sky(None, 0.5))
-    one, three = (_core.LightGuide(world, above(), threads=threads) for threads in (1, 3))
+    one, three = (_core.LightGuide(world, above(size), threads=threads) for threads in (1, 3))
     for at in (LEFT, RIGHT, (-1.5, 0.0, 1.0)):
         a, b = one.at(at, UP), three.at(at, UP)
         assert a is not None
         assert b is not None
         assert (a.triangles_share, a.root, a.below) == (b.triangles_share, b.root, b.below)
+
+
+def test_more_is_learned_for_a_larger_picture() -> None:
+    assert [_core.LightGuide.paths(above(size)) for size in (16, 256, 400, 512, 4096)] == [
+        32_768,
+        32_768,
+        65_536,
+        131_072,
+        524_288,
+    ]
+    world = two_rooms()
+    small, large = (_core.LightGuide(world, above(size)) for size in (16, 512))
+    # Each trial that finds nothing makes a hidden lamp less likely, down to what every light keeps.
+    assert 0 < chance(world, STRONG_LAMP, LEFT, large) < 0.9 * chance(world, STRONG_LAMP, LEFT, small)
 
 
 def test_nothing_is_learned_of_a_single_lamp() -> None:
