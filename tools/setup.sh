@@ -24,10 +24,12 @@ set_up() {
 }
 
 # One hash over everything that asks for a new build when it changes. By content, not by time: a checkout of another
-# branch and back costs nothing, and neither does a fresh copy of the tree.
+# branch and back costs nothing, and neither does a fresh copy of the tree. The build uses all instructions of its
+# processor, and would die on one that lacks some: of a container's image, say, that is run elsewhere.
 fingerprint() {
     cd "$root" && {
         echo "$root"
+        grep -m 1 -E '^(flags|Features)' /proc/cpuinfo 2>/dev/null
         find src CMakeLists.txt pyproject.toml tools/setup.sh -type f -print0 | sort -z | xargs -0 sha256sum
     } | sha256sum
 }
