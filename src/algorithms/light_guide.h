@@ -30,15 +30,15 @@ class LightGuide {
     /// For a point and its unit normal; null where nothing is known.
     const LightFactors* at(const vec3& position, const vec3& normal) const;
 
-    /// How many paths are traced for a picture: about one for every two pixels, so that it always takes a fraction of a
-    /// sample a pixel, but where there are few.
+    /// How many paths are traced for a picture: about one for every two pixels, which takes a fraction of a sample a
+    /// pixel but where there are few, and no more than what the viewer can wait for.
     static uint32_t paths(const Camera& camera) {
         const uint64_t pixels = uint64_t{camera.width()} * camera.height();
         return std::bit_floor(static_cast<uint32_t>(std::clamp(pixels / 2, FEWEST_PATHS, MOST_PATHS)));
     }
 
   private:
-    static constexpr uint64_t FEWEST_PATHS = 1 << 15, MOST_PATHS = 1 << 19;
+    static constexpr uint64_t FEWEST_PATHS = 1 << 15, MOST_PATHS = 1 << 17;
 
     /// Numbers of cells by position and normal: cubes of one size for each of the six sides that normals may face.
     class Cells {

@@ -155,7 +155,7 @@ def test_more_is_learned_for_a_larger_picture() -> None:
         32_768,
         65_536,
         131_072,
-        524_288,
+        131_072,
     ]
     world = two_rooms()
     small, large = (_core.LightGuide(world, above(size)) for size in (16, 512))
