@@ -61,8 +61,8 @@ struct BulkAllocator {
 
   private:
     static constexpr size_t HUGE_PAGE = size_t{2} << 20;
-    // A scene has some dozens of arrays, so what is left of a page that is not full does no harm.
-    static bool is_large(size_t count) { return count * sizeof(T) >= HUGE_PAGE / 8; }
+    // At most as much again is left over of pages that are not full.
+    static bool is_large(size_t count) { return count * sizeof(T) >= HUGE_PAGE / 2; }
 };
 
 }  // namespace etendue

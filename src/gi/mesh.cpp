@@ -31,15 +31,14 @@ Facet::Facet(const vec3& v0, const vec3& v1, const vec3& v2) : corners{v0, v1, v
     area = glm::length(glm::cross(edge1, edge2)) / 2;
 }
 
-void Mesh::pack() {
-    const bool is_plain = normals.empty() && uvs.empty();
-    facets.resize(triangles.size());
-    shading.resize(is_plain ? 0 : triangles.size());
+void Mesh::pack(std::span<Facet> facet_memory, std::span<FacetShading> shading_memory) {
+    facets = facet_memory;
+    shading = shading_memory;
     const auto pack_one = [&](size_t t) {
         const auto& [i, j, k] = triangles[t];
         // In place: copies would wait for what was just written.
         Facet& facet = *std::construct_at(&facets[t], vertices[i], vertices[j], vertices[k]);
-        if (is_plain) return;
+        if (shading.empty()) return;
         const vec3 normal = facet.normal;
         bool smooth = false;
         for (int corner = 0; corner < 3; ++corner) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "gi/memory.h"
@@ -39,18 +40,21 @@ struct Mesh {
     std::vector<std::array<uint32_t, 3>> triangles;
     uint32_t material = 0;
 
-    // Made of these by `pack`, one a triangle.
-    std::vector<Facet, BulkAllocator<Facet>> facets;
-    std::vector<FacetShading, BulkAllocator<FacetShading>>
-        shading;  // empty where there are neither normals nor uvs
+    // Made of these by `pack`, one a triangle. They lie with those of the other meshes, as small arrays would not have
+    // huge pages.
+    std::span<Facet> facets;
+    std::span<FacetShading> shading;  // empty where there are neither normals nor uvs
 
     /// Coordinates beyond this are refused: the square of a triangle's area must fit single precision.
     static constexpr float FARTHEST = 1e9f;
 
     size_t vertex_count() const { return vertices.size() - 1; }
 
-    /// Must be called before anything of the below. Works on all cores.
-    void pack();
+    bool has_shading() const { return !normals.empty() || !uvs.empty(); }
+
+    /// Fills memory for as many as there are triangles, or none where the mesh has no shading. Must be called before
+    /// anything of the below. Works on all cores.
+    void pack(std::span<Facet> facet_memory, std::span<FacetShading> shading_memory);
 
     /// Asks for what a hit of the triangle will want to know.
     void prefetch(uint32_t triangle) const {

@@ -46,6 +46,9 @@ void set_ray(RTCRay& r, const Ray& ray) {
 
 struct Scene::Geometry {
     std::vector<Mesh> meshes;
+    // Of all of them.
+    std::vector<Facet, BulkAllocator<Facet>> facets;
+    std::vector<FacetShading, BulkAllocator<FacetShading>> shading;
     std::vector<std::shared_ptr<const Texture>> textures;
     vec3 lower{INFINITE}, upper{-INFINITE};
     RTCDevice device = nullptr;
@@ -81,8 +84,23 @@ struct Scene::Geometry {
     }
 
     void pack() {
+        size_t triangles = 0, shaded = 0;
+        for (const Mesh& mesh : meshes) {
+            triangles += mesh.triangles.size();
+            if (mesh.has_shading()) shaded += mesh.triangles.size();
+        }
+        facets.resize(triangles);
+        shading.resize(shaded);
+        const auto take = [](auto& free, size_t count) {
+            const auto part = free.first(count);
+            free = free.subspan(count);
+            return part;
+        };
+        std::span<Facet> free_facets(facets);
+        std::span<FacetShading> free_shading(shading);
         for (Mesh& mesh : meshes) {
-            mesh.pack();
+            const size_t count = mesh.triangles.size();
+            mesh.pack(take(free_facets, count), take(free_shading, mesh.has_shading() ? count : 0));
             for (size_t i = 0; i < mesh.vertex_count(); ++i) {
                 lower = glm::min(lower, mesh.vertices[i]);
                 upper = glm::max(upper, mesh.vertices[i]);
