@@ -456,7 +456,7 @@ class Renderer:
 
     def prepare(self) -> bool:
         """
-        Lets the estimator learn what it wants to know before its first sample, as a render would: a tenth of a second.
+        Lets the estimator learn what it wants to know before its first sample, as a render would: a fraction of a second.
         Returns False where `cancel` ended it.
         """
 

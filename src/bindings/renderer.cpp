@@ -182,7 +182,7 @@ void bind_renderer(nb::module_& m) {
              "is kept. How many samples a pixel has in the end depends on the samples alone.")
         .def("prepare", nb::overload_cast<>(&Renderer::prepare), nb::call_guard<nb::gil_scoped_release>(),
              "Lets the estimator learn what it wants to know before its first sample, as a render would: a "
-             "tenth of a second.\nReturns False where `cancel` ended it.")
+             "fraction of a second.\nReturns False where `cancel` ended it.")
         .def_prop_ro("learns", &Renderer::learns,
                      "Whether the estimator has anything to learn in this scene, where it may.")
         .def("cancel", &Renderer::cancel, "Makes a running render return, from another thread.")

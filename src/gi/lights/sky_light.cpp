@@ -93,7 +93,7 @@ std::optional<LightSample> SkyLight::sample_Li(const vec3&, uint32_t, const vec2
     // A cell by its power, then uniformly in solid angle within it.
     const Distribution2D::Choice cell = cells(with_mis).sample(u);
     for (int32_t dy = -1; dy <= 1; ++dy)
-        __builtin_prefetch(&pixel(static_cast<int32_t>(cell.x), static_cast<int32_t>(cell.y) + dy));
+        prefetch(&pixel(static_cast<int32_t>(cell.x), static_cast<int32_t>(cell.y) + dy));
     const float cos_theta = glm::mix(row_cosines_[cell.y], row_cosines_[cell.y + 1], cell.remapped.y);
     const float sin_theta = safe_sqrt(1 - cos_theta * cos_theta);
     const float turns = (static_cast<float>(cell.x) + cell.remapped.x) / static_cast<float>(sky_->width);
