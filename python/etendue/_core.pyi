@@ -263,13 +263,13 @@ class Bsdf:
 def bsdfs() -> list[str]:
     """Names of all BSDFs."""
 
-BRDF_DIFFUSE: int = 1
+BRDF_DIFFUSE: int = 2
 
-BRDF_GLOSSY: int = 2
+BRDF_GLOSSY: int = 4
 
-BRDF_SPECULAR: int = 4
+BRDF_SPECULAR: int = 8
 
-BRDF_TRANSMISSION: int = 8
+BRDF_TRANSMISSION: int = 1
 
 class Light:
     """

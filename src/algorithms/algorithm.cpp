@@ -62,6 +62,17 @@ std::unique_ptr<Algorithm> make_algorithm(const std::string& name,
     return it->second.make(Parameters(it->second.parameters, given));
 }
 
+uint64_t PathByPath::estimate(const Scene& scene, SampleQueue& queue) const {
+    uint64_t rays = 0;
+    for (size_t i = 0;; ++i) {
+        const auto sample = queue.next();
+        if (!sample) return rays;
+        Context context(scene, Sampler(sample->numbers), sample->observer);
+        queue.estimated(i, radiance(context, sample->ray));
+        rays += context.rays;
+    }
+}
+
 Parameter max_path_length_parameter() {
     return {"max_cam_path_length", "longest path, in edges", 10, 1, 1'000'000, {}};
 }

@@ -43,7 +43,8 @@ class Parameters {
     std::map<std::string, ParameterValue> values_;
 };
 
-/// What an estimator works with: the scene, the sample's random numbers, and counters. One a thread.
+/// What an estimator works with that follows one path after the other: the scene, the sample's random numbers, and
+/// counters. One a thread. LaneContext is its like for several paths at once.
 class Context {
   public:
     Context(const Scene& scene, Sampler sampler, Observer* observer = nullptr)
@@ -71,15 +72,16 @@ class Context {
         if (observer_) observer_->shadow_ray(ray, visible);
         return visible;
     }
-    /// A direction to go on in, by the BSDF; empty where nothing goes on, as on a lamp, which absorbs.
-    std::optional<BsdfSample> bounce(const SurfaceHit& hit) {
+    /// A direction to go on in, by the BSDF; there is none on a lamp, which absorbs.
+    BsdfSample bounce(const SurfaceHit& hit) {
         const float lobe = sampler.next_1d();
-        const auto sample = hit.sample(lobe, sampler.next_2d());
-        if (observer_) observer_->bounce(sample ? &*sample : nullptr);
+        const BsdfSample sample = hit.sample(lobe, sampler.next_2d());
+        if (observer_) observer_->bounce(sample);
         return sample;
     }
-    /// Ends the path with probability q; the caller divides the throughput of survivors by 1 - q.
-    bool roulette(float q) {
+    /// Ends a path that plays with probability q; the caller divides the throughput of survivors by 1 - q.
+    bool roulette(float q, bool plays) {
+        if (!plays) return true;
         const bool survives = sampler.next_1d() >= q;
         if (observer_) observer_->roulette(q, survives);
         return survives;
@@ -96,6 +98,23 @@ class Context {
 
   private:
     Observer* observer_;
+};
+
+/// A sample to be estimated: its camera ray, its random numbers, and who listens, if anyone.
+struct CameraSample {
+    Ray ray;
+    Sampler::Stream numbers;
+    Observer* observer = nullptr;
+};
+
+/// Samples to be estimated, in any order.
+class SampleQueue {
+  public:
+    virtual ~SampleQueue() = default;
+    /// The next one; empty: there are no more.
+    virtual std::optional<CameraSample> next() = 0;
+    /// What became of one of them, counted from 0 in the order of `next`.
+    virtual void estimated(size_t sample, const vec3& radiance) = 0;
 };
 
 /// What an estimator may look at before it is asked for anything.
@@ -115,7 +134,18 @@ class Algorithm {
     /// cut short. Learned from random numbers that an estimate uses, anything would bias that estimate; learned from
     /// anything but the scene, the camera and the parameters, a render would not come out the same again.
     virtual bool prepare(const Preparation&) { return true; }
-    /// One unbiased estimate of the radiance along a camera ray. Called by many threads at once.
+    /// Unbiased estimates of the radiance along the camera rays of a queue, until there are no more. Returns how many rays
+    /// it traced. Called by many threads at once.
+    virtual uint64_t estimate(const Scene& scene, SampleQueue& queue) const = 0;
+};
+
+/// An estimator that follows one path after the other.
+class PathByPath : public Algorithm {
+  public:
+    uint64_t estimate(const Scene& scene, SampleQueue& queue) const final;
+
+  protected:
+    /// One unbiased estimate of the radiance along a camera ray.
     virtual vec3 radiance(Context& context, Ray ray) const = 0;
 };
 

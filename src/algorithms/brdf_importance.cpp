@@ -7,7 +7,7 @@ namespace etendue {
 
 namespace {
 
-class BRDFImportance : public Algorithm {
+class BRDFImportance : public PathByPath {
   public:
     explicit BRDFImportance(const Parameters& parameters)
         : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")),
@@ -35,8 +35,8 @@ class BRDFImportance : public Algorithm {
             const vec3 wi = uniform_sphere(context.sampler.next_2d());
             return {wi, hit.f(wi) * (std::abs(glm::dot(wi, hit.frame.n)) / UNIFORM_SPHERE_PDF)};
         }
-        const auto bounce = context.bounce(hit);
-        return bounce ? Direction{bounce->wi, bounce->weight} : Direction{};
+        const BsdfSample bounce = context.bounce(hit);
+        return bounce.exists ? Direction{bounce.wi, bounce.weight} : Direction{};
     }
 
     const int MAX_CAM_PATH_LENGTH;

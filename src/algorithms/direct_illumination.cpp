@@ -9,7 +9,7 @@ namespace etendue {
 
 namespace {
 
-class DirectIllumination : public Algorithm {
+class DirectIllumination : public PathByPath {
   public:
     explicit DirectIllumination(const Parameters& parameters)
         : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")), light_choice_(parameters) {}
@@ -30,9 +30,9 @@ class DirectIllumination : public Algorithm {
                    light_over(context, connect_to_light(context, hit, vec3(1), 2, light_choice_.kind(),
                                                         light_choice_.learned(hit), Mis::none));
         }
-        const auto bounce = context.bounce(hit);
-        if (!bounce) return emitted;
-        const vec3 reflected = bounce->weight * context.intersect(hit.ray_towards(bounce->wi)).Le();
+        const BsdfSample bounce = context.bounce(hit);
+        if (!bounce.exists) return emitted;
+        const vec3 reflected = bounce.weight * context.intersect(hit.ray_towards(bounce.wi)).Le();
         return emitted + context.light({Technique::bsdf_sampling, 2, reflected});
     }
 

@@ -2,7 +2,7 @@
 // found by chance.
 #pragma once
 
-#include "algorithms/algorithm.h"
+#include "algorithms/lane_context.h"
 #include "algorithms/light_guide.h"
 
 namespace etendue {
@@ -55,6 +55,9 @@ class LightChoice {
     const LightFactors* learned(const SurfaceHit& hit) const {
         return guide_.at(hit.point.position, hit.frame.n);
     }
+    PerLane<const LightFactors*> learned(const SurfaceHits& hits, const LaneMask& on) const {
+        return guide_.at(on, hits.point.position, hits.frame.n);
+    }
 
   private:
     LightSampler::Kind kind_;
@@ -63,7 +66,8 @@ class LightChoice {
 };
 
 /// Weight of light sampling for a light sample: 1 without MIS.
-inline float light_sampling_weight(Mis mis, float light_pdf, float bsdf_pdf) {
+template <class F>
+F light_sampling_weight(Mis mis, const F& light_pdf, const F& bsdf_pdf) {
     switch (mis) {
         case Mis::power:
             return power_heuristic(light_pdf, bsdf_pdf);
@@ -77,17 +81,45 @@ inline float light_sampling_weight(Mis mis, float light_pdf, float bsdf_pdf) {
 
 /// Weight of BSDF sampling for a light that its ray hit; the counterpart of the above, so 0 without MIS.
 /// A light that could not have been sampled from there has light_pdf 0 and counts in full.
-inline float bsdf_sampling_weight(Mis mis, float bsdf_pdf, float light_pdf) {
+template <class F>
+F bsdf_sampling_weight(Mis mis, const F& bsdf_pdf, const F& light_pdf) {
     switch (mis) {
         case Mis::power:
             return power_heuristic(bsdf_pdf, light_pdf);
         case Mis::balance:
             return balance_heuristic(bsdf_pdf, light_pdf);
         case Mis::none:
-            return light_pdf > 0 ? 0 : 1;
+            return select(light_pdf > 0, F(0), F(1));
     }
     return 1;
 }
+
+/// Light that arrives at a vertex if nothing is between: the question, and what is found then.
+template <class F>
+struct ConnectionOf {
+    Mask<F> exists{false};
+    RayOf<F> shadow_ray;
+    ContributionOf<F> found;
+};
+
+/// From a vertex to a place on a light, which was chosen with probability `pmf`; `bsdf`: in that direction. The throughput
+/// is the vertex's, at the end of a path of one edge less than `edges`.
+template <class F>
+ConnectionOf<F> connection(const SurfacePointOf<F>& point, const Vec3<F>& shading_normal,
+                           const LightSampleOf<F>& light, const F& pmf, const BsdfValueOf<F>& bsdf,
+                           const Vec3<F>& throughput, const F& edges, Mis mis) {
+    const Vec3<F> reflected = bsdf.f * abs(dot(light.wi, shading_normal)) * light.radiance;
+    ContributionOf<F> found{Technique::light_sampling, edges};
+    found.pdf = pmf * light.pdf;
+    found.other_pdf = bsdf.pdf;
+    found.weight = light_sampling_weight(mis, found.pdf, found.other_pdf);
+    found.unweighted = throughput * reflected / found.pdf;
+    return {light.exists && !is_black(reflected), shadow_ray(point, light), found};
+}
+
+/// One number chooses the light and the place along it, so that samples which are stratified over [0, 1) are so over each
+/// light too. What of its digits the choice uses up, others make up for.
+inline double light_number(float u, float finer_digits) { return u + double{finer_digits} * 0x1p-24; }
 
 /// A light chosen for a vertex, if there was one to choose, and the number that is left for a place on it.
 struct ChosenLight {
@@ -97,55 +129,45 @@ struct ChosenLight {
 
 inline ChosenLight choose_light(Context& context, const SurfaceHit& hit, LightSampler::Kind kind,
                                 const LightFactors* learned) {
-    const double finer_digits = context.sampler.next_1d();
+    const float finer_digits = context.sampler.next_1d();
     const vec2 u = context.sampler.next_2d();
-    // One number chooses the light and the place along it, so that samples which are stratified over [0, 1) are so over
-    // each light too. What of its digits the choice uses up, others make up for.
-    return {
-        context.scene.sample_light_source(kind, hit.point.position, u.x + finer_digits * 0x1p-24, learned),
-        u.y};
+    const double number = light_number(u.x, finer_digits);
+    return {context.scene.sample_light_source(kind, hit.point.position, number, learned), u.y};
 }
 
-/// Light that arrives at a vertex if nothing is between: the question, and what is found then.
-struct Connection {
-    bool exists = false;
-    Ray shadow_ray;
-    Contribution found;
-};
-
-/// To a place on a chosen light, at the end of a path of `edges` rays with the throughput of its vertex.
-inline Connection connect(const SurfaceHit& hit, const LightSampler::Choice& choice, float across,
-                          const vec3& throughput, int edges, Mis mis) {
-    Connection connection;
-    const auto sample = choice.light->sample_Li(hit.point.position, choice.triangle,
-                                                {choice.remapped, across}, mis != Mis::none);
-    if (!sample) return connection;
-    const vec3 reflected = hit.f(sample->wi) * std::abs(glm::dot(sample->wi, hit.frame.n)) * sample->radiance;
-    if (is_black(reflected)) return connection;
-    connection.exists = true;
-    connection.shadow_ray = shadow_ray(hit, *sample);
-    Contribution& found = connection.found;
-    found.technique = Technique::light_sampling;
-    found.edges = edges;
-    found.pdf = choice.pmf * sample->pdf;
-    found.other_pdf = hit.pdf(sample->wi);
-    found.weight = light_sampling_weight(mis, found.pdf, found.other_pdf);
-    found.unweighted = throughput * reflected / found.pdf;
-    return connection;
+/// To a place on a chosen light.
+inline ConnectionOf<float> connect(const SurfaceHit& hit, const LightSampler::Choice& choice, float across,
+                                   const vec3& throughput, float edges, Mis mis) {
+    const LightSample light = choice.light->sample_Li(hit.point.position, choice.triangle,
+                                                      {choice.remapped, across}, mis != Mis::none);
+    if (!light.exists) return {};
+    const BsdfValueOf<float> bsdf{hit.f(light.wi), hit.pdf(light.wi)};
+    return connection(hit.point, hit.frame.n, light, choice.pmf, bsdf, throughput, edges, mis);
 }
 
 /// The same, to a light that is chosen first. None at delta surfaces, where a sampled light could never be seen.
-inline Connection connect_to_light(Context& context, const SurfaceHit& hit, const vec3& throughput, int edges,
-                                   LightSampler::Kind kind, const LightFactors* learned, Mis mis) {
+inline ConnectionOf<float> connect_to_light(Context& context, const SurfaceHit& hit, const vec3& throughput,
+                                            float edges, LightSampler::Kind kind, const LightFactors* learned,
+                                            Mis mis) {
     if (hit.is_type(BRDF_SPECULAR)) return {};
     const auto [choice, across] = choose_light(context, hit, kind, learned);
-    return choice ? connect(hit, *choice, across, throughput, edges, mis) : Connection();
+    return choice ? connect(hit, *choice, across, throughput, edges, mis) : ConnectionOf<float>();
 }
 
+/// And for the vertices of several paths, those that are `on`.
+ConnectionOf<Lanes> connect_to_lights(LaneContext& context, const SurfaceHits& hits, const LaneMask& on,
+                                      const LaneVec3& throughput, const Lanes& edges, LightSampler::Kind kind,
+                                      const PerLane<const LightFactors*>& learned, Mis mis);
+
 /// What arrives over a connection, for which its shadow ray is traced.
-inline vec3 light_over(Context& context, const Connection& connection) {
+inline vec3 light_over(Context& context, const ConnectionOf<float>& connection) {
     return connection.exists && context.visible(connection.shadow_ray) ? context.light(connection.found)
                                                                        : vec3(0);
+}
+inline LaneVec3 light_over(LaneContext& context, const ConnectionOf<Lanes>& connection, const LaneMask& on) {
+    const LaneMask asked = on && connection.exists;
+    if (!any(asked)) return LaneVec3(0);
+    return context.light(connection.found, context.visible(connection.shadow_ray, asked));
 }
 
 }  // namespace etendue

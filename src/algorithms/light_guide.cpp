@@ -156,12 +156,14 @@ class Explorer {
             const SurfaceHit hit = context.intersect(ray);
             if (!hit.valid) return;
             if (!hit.is_type(BRDF_SPECULAR)) try_light(context, hit, trials);
-            const auto bounce = context.bounce(hit);
-            if (!bounce) return;
-            throughput *= bounce->weight;
-            eta_scale *= bounce->eta2;
-            if (is_black(throughput) || !roulette_.survives(context, throughput, eta_scale, depth)) return;
-            ray = hit.ray_towards(bounce->wi);
+            const BsdfSample bounce = context.bounce(hit);
+            if (!bounce.exists) return;
+            throughput *= bounce.weight;
+            eta_scale *= bounce.eta2;
+            if (is_black(throughput)) return;
+            const float bounces = static_cast<float>(depth);
+            if (!roulette_.survives(context, throughput, eta_scale, bounces, true)) return;
+            ray = hit.ray_towards(bounce.wi);
         }
     }
 
@@ -261,6 +263,22 @@ const LightFactors* LightGuide::at(const vec3& position, const vec3& normal) con
     if (small != Cells::NONE) return &of_small_[small];
     const uint32_t large = large_.find(position, normal);
     return large == Cells::NONE ? nullptr : &of_large_[large];
+}
+
+PerLane<const LightFactors*> LightGuide::at(const LaneMask& on, const LaneVec3& positions,
+                                            const LaneVec3& normals) const {
+    PerLane<const LightFactors*> out{};
+    if (of_small_.empty()) return out;
+    for_lanes(on, [&](int i) { small_.prefetch(positions.lane(i), normals.lane(i)); });
+    for_lanes(on, [&](int i) {
+        out[i] = at(positions.lane(i), normals.lane(i));
+        if (out[i]) prefetch(out[i]);
+    });
+    return out;
+}
+
+void LightGuide::Cells::prefetch(const vec3& position, const vec3& normal) const {
+    etendue::prefetch(&slots_[mix_bits(key_of(position, normal)) & (slots_.size() - 1)]);
 }
 
 uint64_t LightGuide::Cells::key_of(const vec3& position, const vec3& normal) const {

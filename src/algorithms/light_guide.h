@@ -29,6 +29,9 @@ class LightGuide {
 
     /// For a point and its unit normal; null where nothing is known.
     const LightFactors* at(const vec3& position, const vec3& normal) const;
+    /// The same for lanes. What is known of the first choice is asked for, to come from memory.
+    PerLane<const LightFactors*> at(const LaneMask& on, const LaneVec3& positions,
+                                    const LaneVec3& normals) const;
 
     /// How many paths are traced for a picture: about one for every two pixels, which takes a fraction of a sample a
     /// pixel but where there are few, and no more than what the viewer can wait for.
@@ -49,6 +52,8 @@ class LightGuide {
         Cells(const vec3& origin, float side) : origin_(origin), per_length_(1 / side) {}
 
         uint32_t find(const vec3& position, const vec3& normal) const;
+        /// Asks for what `find` looks at.
+        void prefetch(const vec3& position, const vec3& normal) const;
         uint32_t find_or_add(const vec3& position, const vec3& normal);
         uint32_t count() const { return count_; }
 

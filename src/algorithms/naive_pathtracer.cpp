@@ -4,6 +4,7 @@
 //
 // The baseline that the other estimators are measured against: no light is ever looked for, so small lamps
 // are rarely found.
+#include "algorithms/lane_paths.h"
 #include "algorithms/russian_roulette.h"
 
 namespace etendue {
@@ -13,30 +14,12 @@ namespace {
 class NaivePathtracer : public Algorithm {
   public:
     explicit NaivePathtracer(const Parameters& parameters)
-        : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")), roulette_(parameters) {}
+        : MAX_CAM_PATH_LENGTH(static_cast<float>(parameters.get<int>("max_cam_path_length"))),
+          roulette_(parameters) {}
 
-    vec3 radiance(Context& context, Ray ray) const override {
-        vec3 radiance(0), throughput(1);
-        float eta_scale = 1;
-        for (int depth = 1;; ++depth) {
-            const SurfaceHit hit = context.intersect(ray);
-            if (hit.is_light()) {
-                radiance += context.light({Technique::bsdf_sampling, depth, throughput * hit.Le()});
-            }
-            if (!hit.valid || depth == MAX_CAM_PATH_LENGTH) break;
-
-            // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
-            context.sampler.start_vertex(depth);
-            const auto bounce = context.bounce(hit);
-            if (!bounce) break;
-            throughput *= bounce->weight;
-            eta_scale *= bounce->eta2;
-            if (is_black(throughput)) break;
-
-            if (!roulette_.survives(context, throughput, eta_scale, depth)) break;
-            ray = hit.ray_towards(bounce->wi);
-        }
-        return radiance;
+    uint64_t estimate(const Scene& scene, SampleQueue& queue) const override {
+        return follow<LanePaths>(scene, queue,
+                                 [&](LaneContext& context, LanePaths& paths) { extend(context, paths); });
     }
 
     static std::vector<Parameter> parameters() {
@@ -46,7 +29,31 @@ class NaivePathtracer : public Algorithm {
     }
 
   private:
-    const int MAX_CAM_PATH_LENGTH;
+    /// By an edge.
+    void extend(LaneContext& context, LanePaths& paths) const {
+        SurfaceHits hits = context.intersect(paths.rays, paths.alive, [] {});
+        if (any(hits.is_light)) {
+            const ContributionOf<Lanes> found{
+                Technique::bsdf_sampling, paths.edges,
+                paths.throughput * Light::found(hits.is_light, hits, false).radiance};
+            paths.radiance += context.light(found, hits.is_light);
+        }
+        LaneMask goes_on = hits.valid && paths.edges < MAX_CAM_PATH_LENGTH;
+
+        // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
+        hits.read_colours();
+        context.sampler.start_vertex(paths.edges);
+        const BsdfSampleOf<Lanes> bounce = context.bounce(hits, goes_on);
+        goes_on = goes_on && bounce.exists;
+        paths.throughput *= bounce.weight;
+        paths.eta_scale *= bounce.eta2;
+        goes_on = goes_on && !is_black(paths.throughput);
+        paths.alive = roulette_.survives(context, paths.throughput, paths.eta_scale, paths.edges, goes_on);
+        paths.rays = hits.rays_towards(bounce.wi);
+        paths.edges += 1;
+    }
+
+    const float MAX_CAM_PATH_LENGTH;
     const RussianRoulette roulette_;
 };
 

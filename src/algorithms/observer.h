@@ -14,14 +14,16 @@ enum class Technique : uint8_t { bsdf_sampling, light_sampling };
 inline constexpr std::array<std::string_view, 2> TECHNIQUES{"bsdf_sampling", "light_sampling"};
 
 /// Light that a path brought to the camera.
-struct Contribution {
+template <class F>
+struct ContributionOf {
     Technique technique = Technique::bsdf_sampling;
-    int edges = 0;       // length of the path
-    vec3 unweighted{0};  // as the technique alone would have it
-    float weight = 1;    // of the technique among those that could have found the same path (MIS)
-    float pdf = 0;  // of the last direction by this technique, in solid angle; 0: no density, as of a delta
-    float other_pdf = 0;  // of the same direction by the other technique
+    F edges = 0;            // length of the path
+    Vec3<F> unweighted{0};  // as the technique alone would have it
+    F weight = 1;           // of the technique among those that could have found the same path (MIS)
+    F pdf = 0;        // of the last direction by this technique, in solid angle; 0: no density, as of a delta
+    F other_pdf = 0;  // of the same direction by the other technique
 };
+using Contribution = ContributionOf<float>;
 
 class Observer {
   public:
@@ -29,8 +31,8 @@ class Observer {
     /// The path's next edge, and what is at its end.
     virtual void edge(const Ray& /*ray*/, const SurfaceHit& /*hit*/) {}
     virtual void shadow_ray(const Ray& /*ray*/, bool /*visible*/) {}
-    /// How the path goes on; null: it does not.
-    virtual void bounce(const BsdfSample* /*sample*/) {}
+    /// How the path goes on, if it does.
+    virtual void bounce(const BsdfSample& /*sample*/) {}
     /// Russian roulette was played, with `q` the probability to end the path here.
     virtual void roulette(float /*q*/, bool /*survived*/) {}
     virtual void contribution(const Contribution& /*contribution*/) {}

@@ -5,6 +5,7 @@
 // power or balance heuristic), or left to light sampling ("mis": none).  Light that only chance can find,
 // straight from the camera or after a delta bounce, counts in full.
 #include "algorithms/direct_light.h"
+#include "algorithms/lane_paths.h"
 #include "algorithms/russian_roulette.h"
 
 namespace etendue {
@@ -14,63 +15,19 @@ namespace {
 class Pathtracer : public Algorithm {
   public:
     explicit Pathtracer(const Parameters& parameters)
-        : MAX_CAM_PATH_LENGTH(parameters.get<int>("max_cam_path_length")),
+        : MAX_CAM_PATH_LENGTH(static_cast<float>(parameters.get<int>("max_cam_path_length"))),
           light_choice_(parameters),
           mis_(mis_of(parameters)),
           roulette_(parameters) {}
 
     bool learns(const Scene& scene) const override { return light_choice_.learns(scene); }
     bool prepare(const Preparation& preparation) override {
-        return light_choice_.prepare(preparation, MAX_CAM_PATH_LENGTH, mis_);
+        return light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_);
     }
 
-    vec3 radiance(Context& context, Ray ray) const override {
-        vec3 radiance(0), throughput(1);
-        float eta_scale = 1;
-        // Where the ray comes from, and how it was chosen: its solid-angle pdf, or by no density at all.
-        vec3 prev_position(0);
-        const LightFactors* prev_learned = nullptr;
-        float prev_pdf = 0;
-        bool prev_delta = true;
-        // To a light from there, whose shadow ray is traced only when the next surface is being fetched from memory.
-        Connection connection;
-        for (int depth = 1;; ++depth) {
-            context.sampler.start_vertex(depth);
-            const SurfaceHit hit =
-                context.intersect(ray, [&] { radiance += light_over(context, connection); });
-            connection.exists = false;
-            // Light found by chance, against the pdf of having sampled it on purpose from the vertex before.
-            if (hit.is_light()) {
-                Contribution found{Technique::bsdf_sampling, depth, throughput * hit.Le()};
-                if (!prev_delta) {
-                    found.pdf = prev_pdf;
-                    found.other_pdf = light_pdf(context, prev_position, prev_learned, hit);
-                    found.weight = bsdf_sampling_weight(mis_, found.pdf, found.other_pdf);
-                }
-                radiance += context.light(found);
-            }
-            if (!hit.valid || depth == MAX_CAM_PATH_LENGTH) break;
-
-            // Light sampled on purpose, one edge further.
-            const LightFactors* const learned = light_choice_.learned(hit);
-            connection =
-                connect_to_light(context, hit, throughput, depth + 1, light_choice_.kind(), learned, mis_);
-
-            // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
-            const auto bounce = context.bounce(hit);
-            if (!bounce) break;
-            throughput *= bounce->weight;
-            eta_scale *= bounce->eta2;
-            if (is_black(throughput)) break;
-
-            if (!roulette_.survives(context, throughput, eta_scale, depth)) break;
-            prev_position = hit.point.position;
-            prev_learned = learned;
-            prev_pdf = bounce->pdf;
-            prev_delta = bounce->is_delta();
-            ray = hit.ray_towards(bounce->wi);
-        }
-        return radiance + light_over(context, connection);
+    uint64_t estimate(const Scene& scene, SampleQueue& queue) const override {
+        return follow<Paths>(scene, queue,
+                             [&](LaneContext& context, Paths& paths) { extend(context, paths); });
     }
 
     static std::vector<Parameter> parameters() {
@@ -82,14 +39,79 @@ class Pathtracer : public Algorithm {
     }
 
   private:
-    float light_pdf(const Context& context, const vec3& reference, const LightFactors* learned,
-                    const SurfaceHit& hit) const {
-        const auto kind = light_choice_.kind();
-        return context.scene.light_source_pdf(kind, reference, hit.light, hit.triangle, learned) *
-               hit.light->pdf_Li(hit, mis_ != Mis::none);
+    struct Paths : LanePaths {
+        // Where each came from last, and how that direction was chosen: its solid-angle pdf, or by no density at all.
+        LaneVec3 prev_position;
+        PerLane<const LightFactors*> prev_learned{};
+        Lanes prev_pdf = 0;
+        LaneMask prev_delta{true};
+        // To a light from there, whose shadow ray is traced only when the next surface is being fetched from memory.
+        ConnectionOf<Lanes> connection;
+    };
+
+    /// By an edge.
+    void extend(LaneContext& context, Paths& paths) const {
+        const LaneMask on = paths.alive, is_first = paths.edges == 1;
+        context.sampler.start_vertex(paths.edges);
+        SurfaceHits hits = context.intersect(paths.rays, on, [&] {
+            paths.radiance += light_over(context, paths.connection, on && !is_first);
+        });
+
+        // Light found by chance, against the pdf of having sampled it on purpose from the vertex before.
+        if (any(hits.is_light)) {
+            const FoundLightOf<Lanes> light = Light::found(hits.is_light, hits, mis_ != Mis::none);
+            ContributionOf<Lanes> found{Technique::bsdf_sampling, paths.edges,
+                                        paths.throughput * light.radiance};
+            const LaneMask could_be_sampled = hits.is_light && !is_first && !paths.prev_delta;
+            if (any(could_be_sampled)) {
+                found.pdf = select(could_be_sampled, paths.prev_pdf, Lanes(0));
+                found.other_pdf = choice_pmfs(context, paths, hits, could_be_sampled) * light.pdf;
+                found.weight = select(could_be_sampled,
+                                      bsdf_sampling_weight(mis_, found.pdf, found.other_pdf), Lanes(1));
+            }
+            paths.radiance += context.light(found, hits.is_light);
+        }
+        LaneMask goes_on = hits.valid && paths.edges < MAX_CAM_PATH_LENGTH;
+
+        // Light sampled on purpose, one edge further.
+        hits.read_colours();
+        const PerLane<const LightFactors*> learned = light_choice_.learned(hits, goes_on);
+        paths.connection = connect_to_lights(context, hits, goes_on, paths.throughput, paths.edges + 1,
+                                             light_choice_.kind(), learned, mis_);
+
+        // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
+        const BsdfSampleOf<Lanes> bounce = context.bounce(hits, goes_on);
+        goes_on = goes_on && bounce.exists;
+        paths.throughput *= bounce.weight;
+        paths.eta_scale *= bounce.eta2;
+        goes_on = goes_on && !is_black(paths.throughput);
+        goes_on = roulette_.survives(context, paths.throughput, paths.eta_scale, paths.edges, goes_on);
+
+        paths.prev_position = hits.point.position;
+        paths.prev_learned = learned;
+        paths.prev_pdf = bounce.pdf;
+        paths.prev_delta = bounce.is_delta();
+        paths.rays = hits.rays_towards(bounce.wi);
+        paths.alive = goes_on;
+        paths.edges += 1;
+        // Of those that end here nothing will be traced meanwhile.
+        paths.radiance += light_over(context, paths.connection, on && !goes_on);
     }
 
-    const int MAX_CAM_PATH_LENGTH;
+    /// Probabilities with which the lights that were found, and what of them, would have been chosen on purpose; 0 for the
+    /// other lanes.
+    Lanes choice_pmfs(const LaneContext& context, const Paths& paths, const SurfaceHits& hits,
+                      const LaneMask& on) const {
+        PerLane<float> pmfs{};
+        for_lanes(on, [&](int i) {
+            pmfs[i] = context.scene.light_source_pdf(light_choice_.kind(), paths.prev_position.lane(i),
+                                                     hits.found.light[i], hits.found.triangle[i],
+                                                     paths.prev_learned[i]);
+        });
+        return lanes_of(pmfs);
+    }
+
+    const float MAX_CAM_PATH_LENGTH;
     LightChoice light_choice_;
     const Mis mis_;
     const RussianRoulette roulette_;

@@ -15,18 +15,21 @@ namespace etendue {
 class RussianRoulette {
   public:
     explicit RussianRoulette(const Parameters& parameters)
-        : RR_MIN_PATH_LENGTH(parameters.get<int>("rr_min_path_length")),
+        : RR_MIN_PATH_LENGTH(static_cast<float>(parameters.get<int>("rr_min_path_length"))),
           RR_THRESHOLD(static_cast<float>(parameters.get<double>("rr_threshold"))) {}
 
-    /// Plays after bounce number `bounces`. False: the path ends here. `eta_scale` undoes the compression of
-    /// radiance in glass, which comes back when the path leaves it (pbrt 4th ed., 13.2.1).
-    bool survives(Context& context, vec3& throughput, float eta_scale, int bounces) const {
-        const float carried = max_component(throughput) * eta_scale;
-        if (bounces <= RR_MIN_PATH_LENGTH || carried >= RR_THRESHOLD) return true;
-        const float q = 1 - carried / RR_THRESHOLD;
-        if (!context.roulette(q)) return false;
-        throughput /= 1 - q;
-        return true;
+    /// Plays after bounce number `bounces` with the paths that are `on`. False: a path ends here. `eta_scale` undoes the
+    /// compression of radiance in glass, which comes back when the path leaves it (pbrt 4th ed., 13.2.1).
+    template <class Context, class F>
+    Mask<F> survives(Context& context, Vec3<F>& throughput, const F& eta_scale, const F& bounces,
+                     const Mask<F>& on) const {
+        const F carried = max_component(throughput) * eta_scale;
+        const Mask<F> plays = on && bounces > RR_MIN_PATH_LENGTH && carried < RR_THRESHOLD;
+        if (!any(plays)) return on;
+        const F q = 1 - carried / RR_THRESHOLD;
+        const Mask<F> survives = on && context.roulette(q, plays);
+        throughput = select(plays, throughput / (1 - q), throughput);
+        return survives;
     }
 
     static std::vector<Parameter> parameters() {
@@ -36,8 +39,7 @@ class RussianRoulette {
     }
 
   private:
-    const int RR_MIN_PATH_LENGTH;
-    const float RR_THRESHOLD;
+    const float RR_MIN_PATH_LENGTH, RR_THRESHOLD;
 };
 
 }  // namespace etendue

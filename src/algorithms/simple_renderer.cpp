@@ -6,7 +6,7 @@ namespace etendue {
 
 namespace {
 
-class SimpleRenderer : public Algorithm {
+class SimpleRenderer : public PathByPath {
   public:
     explicit SimpleRenderer(const Parameters&) {}
 

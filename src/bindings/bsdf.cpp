@@ -41,12 +41,12 @@ nb::dict draw_bsdf(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& u
         const vec3 random = vec3_at(u, i);
         const auto sample =
             bsdf_sample(bsdf.kind, bsdf.surface, vec3_at(wo, i), random.x, {random.y, random.z});
-        if (!sample) continue;
-        set_vec3(wi, i, sample->wi);
-        set_vec3(weight, i, sample->weight);
-        pdf.data()[i] = sample->pdf;
-        eta2.data()[i] = sample->eta2;
-        type.data()[i] = sample->type;
+        if (!sample.exists) continue;
+        set_vec3(wi, i, sample.wi);
+        set_vec3(weight, i, sample.weight);
+        pdf.data()[i] = sample.pdf;
+        eta2.data()[i] = sample.eta2;
+        type.data()[i] = static_cast<uint8_t>(sample.type);
     }
     nb::dict out;
     out["wi"] = wi, out["weight"] = weight, out["pdf"] = pdf, out["eta2"] = eta2, out["type"] = type;

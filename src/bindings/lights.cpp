@@ -45,11 +45,11 @@ nb::dict draw_light(const PythonLight& light, const Vectors3& reference, const V
         numbers.x = triangle.remapped;
         chosen.data()[i] = static_cast<int32_t>(triangle.index);
         const auto sample = light->sample_Li(vec3_at(reference, i), triangle.index, numbers, with_mis);
-        if (!sample) continue;
-        set_vec3(wi, i, sample->wi);
-        set_vec3(radiance, i, sample->radiance);
-        set_vec3(position, i, sample->point.position);
-        pdf.data()[i] = triangle.pmf * sample->pdf;
+        if (!sample.exists) continue;
+        set_vec3(wi, i, sample.wi);
+        set_vec3(radiance, i, sample.radiance);
+        set_vec3(position, i, sample.point.position);
+        pdf.data()[i] = triangle.pmf * sample.pdf;
     }
     nb::dict out;
     out["wi"] = wi, out["radiance"] = radiance, out["pdf"] = pdf, out["position"] = position;
@@ -140,12 +140,12 @@ nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vecto
         if (!choice) continue;
         const auto sample = choice->light->sample_Li(vec3_at(reference, i), choice->triangle,
                                                      {choice->remapped, numbers.y}, with_mis);
-        if (!sample) continue;
+        if (!sample.exists) continue;
         index.data()[i] = static_cast<int32_t>(choice->light - scene.lights().data());
-        set_vec3(wi, i, sample->wi);
-        set_vec3(radiance, i, sample->radiance);
-        set_vec3(position, i, sample->point.position);
-        pdf.data()[i] = choice->pmf * sample->pdf;
+        set_vec3(wi, i, sample.wi);
+        set_vec3(radiance, i, sample.radiance);
+        set_vec3(position, i, sample.point.position);
+        pdf.data()[i] = choice->pmf * sample.pdf;
     }
     nb::dict out;
     out["index"] = index, out["wi"] = wi, out["radiance"] = radiance, out["pdf"] = pdf,
@@ -320,12 +320,12 @@ auto over_arrays(Weight weight) {
 }
 
 void bind_weights(nb::module_& m) {
-    m.def("light_sampling_weight", over_arrays(&light_sampling_weight), nb::arg("mis"), nb::arg("light_pdf"),
-          nb::arg("bsdf_pdf"),
+    m.def("light_sampling_weight", over_arrays(&light_sampling_weight<float>), nb::arg("mis"),
+          nb::arg("light_pdf"), nb::arg("bsdf_pdf"),
           "mis: \"power\", \"balance\" or \"none\". float32 (n,), (n,) -> (n,): weight of a light sample, "
           "light_pdf > 0.");
-    m.def("bsdf_sampling_weight", over_arrays(&bsdf_sampling_weight), nb::arg("mis"), nb::arg("bsdf_pdf"),
-          nb::arg("light_pdf"),
+    m.def("bsdf_sampling_weight", over_arrays(&bsdf_sampling_weight<float>), nb::arg("mis"),
+          nb::arg("bsdf_pdf"), nb::arg("light_pdf"),
           "The counterpart: weight of a light that a BSDF sample's ray found, bsdf_pdf > 0.");
 }
 

@@ -30,7 +30,9 @@ std::string technique_name(const Contribution& found) {
 void bind_replay(nb::module_& m) {
     nb::class_<Contribution>(m, "Contribution", "Light that a path brought to the camera.")
         .def_prop_ro("technique", &technique_name, "bsdf_sampling or light_sampling.")
-        .def_ro("edges", &Contribution::edges, "Length of the path in rays.")
+        .def_prop_ro(
+            "edges", [](const Contribution& c) { return static_cast<int>(c.edges); },
+            "Length of the path in rays.")
         .def_prop_ro(
             "unweighted", [](const Contribution& c) { return from_vec3(c.unweighted); },
             "(3,): radiance, as the technique alone would have it.")
@@ -80,10 +82,11 @@ void bind_replay(nb::module_& m) {
             "bounce_lobe",
             [](const PathVertex& v) -> std::optional<std::string> {
                 if (!v.bounce) return std::nullopt;
-                std::string name = v.bounce->type & BRDF_SPECULAR ? "specular"
-                                   : v.bounce->type & BRDF_GLOSSY ? "glossy"
-                                                                  : "diffuse";
-                return name + (v.bounce->type & BRDF_TRANSMISSION ? " transmission" : " reflection");
+                const auto type = static_cast<unsigned>(v.bounce->type);
+                std::string name = type & BRDF_SPECULAR ? "specular"
+                                   : type & BRDF_GLOSSY ? "glossy"
+                                                        : "diffuse";
+                return name + (type & BRDF_TRANSMISSION ? " transmission" : " reflection");
             },
             "Of the direction that the path went on in; None: it did not.")
         .def_prop_ro(

@@ -60,11 +60,11 @@ void AovPass::add_guides(Context& context, AovPixel& pixel, SurfaceHit hit) cons
     vec3 throughput(1);
     for (int depth = 1; hit.valid && hit.is_type(BRDF_SPECULAR) && depth <= MAX_DELTA_BOUNCES; ++depth) {
         context.sampler.start_vertex(depth);
-        const auto bounce = context.bounce(hit);
-        if (!bounce) break;
+        const BsdfSample bounce = context.bounce(hit);
+        if (!bounce.exists) break;
         // Without the compression of radiance in glass, a share of light.
-        throughput *= bounce->weight * bounce->eta2;
-        hit = context.intersect(hit.ray_towards(bounce->wi));
+        throughput *= bounce.weight * bounce.eta2;
+        hit = context.intersect(hit.ray_towards(bounce.wi));
     }
     const vec3 seen = (hit.valid ? hit.albedo() : vec3(0)) + hit.Le();
     pixel.denoising_albedo += glm::min(throughput * seen, vec3(1));

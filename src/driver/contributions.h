@@ -19,7 +19,6 @@ struct ContributionSums {
 /// Keeps one sample's contributions, until it is known that the sample counts.
 class ContributionObserver : public Observer {
   public:
-    void start() { sample_ = {}; }
     void contribution(const Contribution& found) override {
         const auto part = found.edges > ContributionSums::DIRECT_EDGES ? ContributionSums::indirect
                                                                        : ContributionSums::direct;

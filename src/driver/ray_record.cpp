@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "driver/sample_batch.h"
 #include "driver/tiles.h"
 
 namespace etendue {
@@ -24,17 +25,22 @@ RayRecord::RayRecord(const Scene& scene, const Sensor& sensor, const Algorithm& 
     const Tiles tiles(width_, height_);
     tiles_.resize(tiles.count());
     TileWorkers(thread_count(threads)).for_each(tiles, [&](uint32_t index, const Tile& tile) {
-        Recorder recorder;
-        Context context(scene, sensor.make_sampler(), &recorder);
+        SampleBatch<Recorder> batch(sensor);
+        const auto flush = [&] {
+            batch.estimate(algorithm, scene, [&](const auto& sample) {
+                const auto& rays = sample.listener.rays;
+                tiles_[index].insert(tiles_[index].end(), rays.begin(), rays.end());
+            });
+        };
         for (uint32_t y = tile.y0; y < tile.y1; ++y) {
             for (uint32_t x = tile.x0; x < tile.x1; ++x) {
                 for (uint64_t sample = 0; sample < samples; ++sample) {
-                    const Ray ray = sensor.start(context.sampler, x, y, sample);
-                    algorithm.radiance(context, ray);
+                    batch.add(x, y, sample);
+                    if (batch.is_full()) flush();
                 }
             }
         }
-        tiles_[index] = std::move(recorder.rays);
+        flush();
     });
 }
 

@@ -9,8 +9,8 @@ namespace etendue {
 
 class RayRecord {
   public:
-    /// Renders samples [0, samples) of every pixel and keeps their rays, 32 bytes each, in their order within a
-    /// tile. The scene must outlive the record.
+    /// Renders samples [0, samples) of every pixel and keeps their rays, 32 bytes each, path by path within a tile, which
+    /// is the order in which they are traced fastest. The scene must outlive the record.
     RayRecord(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm, uint64_t samples,
               int threads);
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "driver/beauty.h"
+#include "driver/sample_batch.h"
 
 namespace etendue {
 
@@ -176,35 +177,39 @@ void Renderer::render_tile(uint32_t index, uint32_t stride, uint64_t samples) {
 }
 
 void Renderer::render_part(const Tile& part, uint32_t stride, uint64_t samples) {
-    ContributionObserver observer;
-    Context context(scene_, sensor_.make_sampler(), contributions_.empty() ? nullptr : &observer);
-    uint64_t taken = 0;
+    if (contributions_.empty()) {
+        render_part<Unobserved>(part, stride, samples);
+    } else {
+        render_part<ContributionObserver>(part, stride, samples);
+    }
+}
+
+template <class Listener>
+void Renderer::render_part(const Tile& part, uint32_t stride, uint64_t samples) {
+    SampleBatch<Listener> batch(sensor_, &stop_);
+    uint64_t taken = 0, rays = 0;
+    const auto flush = [&] {
+        rays += batch.estimate(*algorithm_, scene_, [&](const auto& sample) {
+            ++taken;
+            if (!film_.at(sample.x, sample.y).add(sample.radiance, sample.index)) {
+                report_invalid({sample.x, sample.y, sample.index});
+            } else if constexpr (std::is_same_v<Listener, ContributionObserver>) {
+                sample.listener.add_to(contributions_[size_t{sample.y} * film_.width() + sample.x]);
+            }
+        });
+    };
     // A tile begins at a multiple of every stride that divides its side.
     for (uint32_t y = part.y0; y < part.y1; y += stride) {
         for (uint32_t x = part.x0; x < part.x1; x += stride) {
-            taken += render_pixel(context, observer, x, y, samples);
+            for (uint64_t i = film_.at(x, y).count; i < samples && !stop_; ++i) {
+                batch.add(x, y, first_sample_ + i);
+                if (batch.is_full()) flush();
+            }
         }
     }
-    rays_ += context.rays;
+    flush();
+    rays_ += rays;
     samples_done_ += taken;
-}
-
-uint64_t Renderer::render_pixel(Context& context, ContributionObserver& observer, uint32_t x, uint32_t y,
-                                uint64_t samples) {
-    Pixel& pixel = film_.at(x, y);
-    const bool is_split = !contributions_.empty();
-    const uint64_t before = pixel.count;
-    while (pixel.count < samples && !stop_) {
-        const uint64_t sample = first_sample_ + pixel.count;
-        const Ray ray = sensor_.start(context.sampler, x, y, sample);
-        if (is_split) observer.start();
-        if (!pixel.add(algorithm_->radiance(context, ray), sample)) {
-            report_invalid({x, y, sample});
-        } else if (is_split) {
-            observer.add_to(contributions_[size_t{y} * film_.width() + x]);
-        }
-    }
-    return pixel.count - before;
 }
 
 void Renderer::report_invalid(const InvalidSample& sample) {

@@ -118,9 +118,8 @@ class Renderer {
     void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
     /// Whoever calls it holds the tile's mutex.
     void render_part(const Tile& part, uint32_t stride, uint64_t samples);
-    /// Returns how many samples it took.
-    uint64_t render_pixel(Context& context, ContributionObserver& observer, uint32_t x, uint32_t y,
-                          uint64_t samples);
+    template <class Listener>
+    void render_part(const Tile& part, uint32_t stride, uint64_t samples);
     void report_invalid(const InvalidSample& sample);
 
     const Scene& scene_;

@@ -3,18 +3,31 @@
 #include <stdexcept>
 #include <utility>
 
+#include "driver/sample_batch.h"
 #include "driver/tiles.h"
 
 namespace etendue {
 
-/// Adds up what one sample found: the variance is that of whole samples, which may find light several times.
+namespace {
+
+/// Keeps what one sample found.
 class TechniqueObserver : public Observer {
   public:
-    explicit TechniqueObserver(int max_edges)
+    void contribution(const Contribution& found) override { all.push_back(found); }
+
+    std::vector<Contribution> all;
+};
+
+}  // namespace
+
+/// Adds up what one sample found: the variance is that of whole samples, which may find light several times.
+class TechniqueSums {
+  public:
+    explicit TechniqueSums(int max_edges)
         : max_edges_(max_edges), found_(2 * TECHNIQUES.size() * max_edges) {}
 
-    void contribution(const Contribution& found) override {
-        const int edges = std::min(found.edges, max_edges_);
+    void add(const Contribution& found) {
+        const int edges = std::min(static_cast<int>(found.edges), max_edges_);
         const size_t row = static_cast<size_t>(found.technique) * max_edges_ + edges - 1;
         found_[row] += found.unweighted * found.weight;
         found_[row + found_.size() / 2] += found.unweighted;
@@ -23,7 +36,7 @@ class TechniqueObserver : public Observer {
 
     /// Moves what was found to a pixel's sums, and begins anew. What is no finite number is left out, as from
     /// the film.
-    void add_to(TechniqueFilm::Sums* sums) {
+    void move_to(TechniqueFilm::Sums* sums) {
         for (size_t row = 0; row < found_.size(); row += max_edges_) {
             for (size_t i = row; i < row + longest_; ++i) {
                 const vec3 value = std::exchange(found_[i], vec3(0));
@@ -52,27 +65,28 @@ bool TechniqueFilm::render(uint64_t samples) {
     pixels_done_ = 0;
     TileWorkers workers(threads_);
     workers.for_each(Tiles(width(), height()), [&](uint32_t, const Tile& tile) {
-        TechniqueObserver observer(max_edges_);
-        Context context(scene_, sensor_.make_sampler(), &observer);
+        SampleBatch<TechniqueObserver> batch(sensor_);
+        TechniqueSums sums(max_edges_);
+        const auto flush = [&] {
+            batch.estimate(algorithm_, scene_, [&](const auto& sample) {
+                for (const Contribution& found : sample.listener.all) sums.add(found);
+                sums.move_to(&sums_[slot(pixel(sample.x, sample.y), weighted, Technique::bsdf_sampling, 1)]);
+            });
+        };
         for (uint32_t y = tile.y0; y < tile.y1; ++y) {
             for (uint32_t x = tile.x0; x < tile.x1 && !stop_; ++x) {
-                render_pixel(context, observer, x, y, samples);
+                for (uint64_t index = samples_; index < samples_ + samples; ++index) {
+                    batch.add(x, y, index);
+                    if (batch.is_full()) flush();
+                }
                 ++pixels_done_;
             }
         }
+        flush();
     });
     if (stop_.exchange(false)) return false;
     samples_ += samples;
     return true;
-}
-
-void TechniqueFilm::render_pixel(Context& context, TechniqueObserver& observer, uint32_t x, uint32_t y,
-                                 uint64_t samples) {
-    for (uint64_t index = samples_; index < samples_ + samples; ++index) {
-        const Ray ray = sensor_.start(context.sampler, x, y, index);
-        algorithm_.radiance(context, ray);
-        observer.add_to(&sums_[slot(pixel(x, y), weighted, Technique::bsdf_sampling, 1)]);
-    }
 }
 
 }  // namespace etendue

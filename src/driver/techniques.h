@@ -45,8 +45,6 @@ class TechniqueFilm {
         const size_t column = weighting * TECHNIQUES.size() + static_cast<size_t>(technique);
         return pixel * slots() + column * max_edges_ + edges - 1;
     }
-    void render_pixel(Context& context, class TechniqueObserver& observer, uint32_t x, uint32_t y,
-                      uint64_t samples);
 
     const Scene& scene_;
     const Sensor& sensor_;

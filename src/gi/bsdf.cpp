@@ -25,6 +25,16 @@ struct List {
         return visit(First{});
     }
 
+    /// Calls visit(bsdf, mask) for every BSDF that some lanes are of.
+    static void for_kinds(const LaneMask& on, const Lanes& kinds, auto&& visit) {
+        BsdfKind kind = 0;
+        const auto for_kind = [&](auto bsdf) {
+            const LaneMask mask = on && kinds == static_cast<float>(kind++);
+            if (any(mask)) visit(bsdf, mask);
+        };
+        (for_kind(Types{}), ...);
+    }
+
     static std::vector<BsdfInfo> infos() {
         return {{Types::name, Types::summary, Types::is_delta, Types::is_reciprocal}...};
     }
@@ -57,14 +67,40 @@ float bsdf_pdf(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3
     return Bsdfs::dispatch<float>(kind, [&](auto bsdf) { return decltype(bsdf)::pdf(surface, wo, wi); });
 }
 
-std::optional<BsdfSample> bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, float lobe,
-                                      const vec2& u) {
-    return Bsdfs::dispatch<std::optional<BsdfSample>>(
+BsdfSample bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, float lobe, const vec2& u) {
+    return Bsdfs::dispatch<BsdfSample>(
         kind, [&](auto bsdf) { return decltype(bsdf)::sample(surface, wo, lobe, u); });
 }
 
 bool bsdf_is_delta(BsdfKind kind) {
     return Bsdfs::dispatch<bool>(kind, [](auto bsdf) { return decltype(bsdf)::is_delta; });
+}
+
+[[gnu::flatten]] BsdfValueOf<Lanes> bsdf_values(const LaneMask& on, const Lanes& kinds,
+                                                const SurfaceOf<Lanes>& surfaces, const LaneVec3& wo,
+                                                const LaneVec3& wi) {
+    BsdfValueOf<Lanes> out;
+    Bsdfs::for_kinds(on, kinds, [&](auto bsdf, const LaneMask& mask) {
+        out.f = select(mask, decltype(bsdf)::f(surfaces, wo, wi), out.f);
+        out.pdf = select(mask, decltype(bsdf)::pdf(surfaces, wo, wi), out.pdf);
+    });
+    return out;
+}
+
+[[gnu::flatten]] BsdfSampleOf<Lanes> bsdf_samples(const LaneMask& on, const Lanes& kinds,
+                                                  const SurfaceOf<Lanes>& surfaces, const LaneVec3& wo,
+                                                  const Lanes& lobe, const LaneVec2& u) {
+    BsdfSampleOf<Lanes> out;
+    Bsdfs::for_kinds(on, kinds, [&](auto bsdf, const LaneMask& mask) {
+        const BsdfSampleOf<Lanes> sample = decltype(bsdf)::sample(surfaces, wo, lobe, u);
+        out.exists = select(mask, sample.exists, out.exists);
+        out.wi = select(mask, sample.wi, out.wi);
+        out.weight = select(mask, sample.weight, out.weight);
+        out.pdf = select(mask, sample.pdf, out.pdf);
+        out.type = select(mask, sample.type, out.type);
+        out.eta2 = select(mask, sample.eta2, out.eta2);
+    });
+    return out;
 }
 
 std::span<const BsdfInfo> bsdfs() {

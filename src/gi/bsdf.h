@@ -6,9 +6,10 @@
 // `Surface`,
 //     sample().weight == f(wo, wi) |wi.z| / pdf(wo, wi)    and    sample() has the density pdf,
 // but for delta lobes, whose f and pdf are 0 and whose weight is the whole truth.
+//
+// Everything is for one surface and pair of directions, or for as many as Lanes hold, see gi/lanes.h.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string_view>
 
@@ -18,35 +19,47 @@
 namespace etendue {
 
 enum BrdfType : uint8_t {
-    BRDF_DIFFUSE = 1,
-    BRDF_GLOSSY = 2,
-    BRDF_SPECULAR = 4,  // a Dirac delta
-    BRDF_TRANSMISSION = 8,
+    BRDF_TRANSMISSION = 1,
+    BRDF_DIFFUSE = 2,
+    BRDF_GLOSSY = 4,
+    BRDF_SPECULAR = 8,  // a Dirac delta
 };
 
 /// The parameters of a BSDF at a point: the material with its textures looked up.
-struct Surface {
-    vec3 albedo{0.8f};
-    float ior = 1.5f;
-    float roughness = 0.1f;
-    float absorb = 0;
-    bool coated = false;
-    bool front = true;  // wo is on the side that the geometric normal points to
+template <class F>
+struct SurfaceOf {
+    Vec3<F> albedo{0.8f};
+    F ior = 1.5f;
+    F roughness = 0.1f;
+    F absorb = 0;
+    Mask<F> coated{false};
+    Mask<F> front{true};  // wo is on the side that the geometric normal points to
 
     /// The colour of a lobe of the coat: the albedo tints it unless the material is `coated`.
-    vec3 tint() const { return coated ? vec3(1) : albedo; }
+    Vec3<F> tint() const { return select(coated, Vec3<F>(1), albedo); }
     /// Index of refraction of the far side over that of wo's side.
-    float eta() const { return front ? ior : 1 / ior; }
+    F eta() const { return select(front, ior, 1 / ior); }
 };
+using Surface = SurfaceOf<float>;
 
-struct BsdfSample {
-    vec3 wi;
-    vec3 weight;     // f |cos| / pdf
-    float pdf;       // solid angle; for a delta lobe the probability of choosing it
-    uint8_t type;    // of the lobe that was chosen
-    float eta2 = 1;  // squared relative index crossed by refraction, which `weight` divided radiance by
+template <class F>
+struct BsdfSampleOf {
+    Mask<F> exists{false};  // else nothing goes on from here, and the rest means nothing
+    Vec3<F> wi{0};
+    Vec3<F> weight{0};  // f |cos| / pdf
+    F pdf = 0;          // solid angle; for a delta lobe the probability of choosing it
+    F type = 0;         // of the lobe that was chosen: BRDF_ bits, as a number
+    F eta2 = 1;         // squared relative index crossed by refraction, which `weight` divided radiance by
 
-    bool is_delta() const { return type & BRDF_SPECULAR; }
+    Mask<F> is_delta() const { return type >= BRDF_SPECULAR; }
+};
+using BsdfSample = BsdfSampleOf<float>;
+
+/// For one pair of directions.
+template <class F>
+struct BsdfValueOf {
+    Vec3<F> f{0};
+    F pdf = 0;
 };
 
 /// A material type of the scene file: text that its name may contain, and what it sets where a patch does
@@ -85,12 +98,19 @@ struct Bsdf {
     /// What of the light that arrives leaves again, about, and from nowhere in particular: for pictures of
     /// materials and for denoising, never for transport.
     static vec3 albedo(const Surface& surface) { return surface.albedo; }
-    static vec3 f(const Surface&, const vec3& /*wo*/, const vec3& /*wi*/) { return vec3(0); }
-    static float pdf(const Surface&, const vec3& /*wo*/, const vec3& /*wi*/) { return 0; }
-    /// `lobe` and `u` are uniform in [0, 1). Empty: nothing goes on from here.
-    static std::optional<BsdfSample> sample(const Surface&, const vec3& /*wo*/, float /*lobe*/,
-                                            const vec2& /*u*/) {
-        return std::nullopt;
+    template <class F>
+    static Vec3<F> f(const SurfaceOf<F>&, const Vec3<F>& /*wo*/, const Vec3<F>& /*wi*/) {
+        return Vec3<F>(0);
+    }
+    template <class F>
+    static F pdf(const SurfaceOf<F>&, const Vec3<F>& /*wo*/, const Vec3<F>& /*wi*/) {
+        return 0;
+    }
+    /// `lobe` and `u` are uniform in [0, 1).
+    template <class F>
+    static BsdfSampleOf<F> sample(const SurfaceOf<F>&, const Vec3<F>& /*wo*/, const F& /*lobe*/,
+                                  const Vec2<F>& /*u*/) {
+        return {};
     }
 };
 
@@ -98,9 +118,14 @@ struct Bsdf {
 vec3 bsdf_albedo(BsdfKind kind, const Surface& surface);
 vec3 bsdf_f(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi);
 float bsdf_pdf(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi);
-std::optional<BsdfSample> bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, float lobe,
-                                      const vec2& u);
+BsdfSample bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, float lobe, const vec2& u);
 bool bsdf_is_delta(BsdfKind kind);
+
+// And for as many surfaces as there are lanes, each of a kind of its own, given as a number; 0 where a lane is off.
+BsdfValueOf<Lanes> bsdf_values(const LaneMask& on, const Lanes& kinds, const SurfaceOf<Lanes>& surfaces,
+                               const LaneVec3& wo, const LaneVec3& wi);
+BsdfSampleOf<Lanes> bsdf_samples(const LaneMask& on, const Lanes& kinds, const SurfaceOf<Lanes>& surfaces,
+                                 const LaneVec3& wo, const Lanes& lobe, const LaneVec2& u);
 
 /// The registry: every BSDF, its kind being its index here, and every material type in matching order.
 struct BsdfInfo {

@@ -19,18 +19,6 @@ Camera::Camera(const CameraSettings& settings, uint32_t width, uint32_t height)
     up_ = glm::cross(right_, forward_);
 }
 
-Ray Camera::pinhole_ray(const vec2& film) const {
-    const vec2 size(width_, height_);
-    if (!settings_.perspective) {
-        const float theta = PI * film.y / size.y, phi = 2 * PI * (film.x / size.x - 0.5f);
-        const vec3 level = std::cos(phi) * forward_ + std::sin(phi) * right_;
-        return {settings_.pos, std::sin(theta) * level + std::cos(theta) * up_};
-    }
-    // Pixels are square: one scale for both axes, set by the height.
-    const float x = (2 * film.x - size.x) / size.y, y = (size.y - 2 * film.y) / size.y;
-    return {settings_.pos, glm::normalize(forward_ + tan_half_fov_ * (x * right_ + y * up_))};
-}
-
 std::optional<vec2> Camera::film_of(const vec3& point) const {
     const vec2 size(width_, height_);
     const vec3 to_point = point - settings_.pos;
@@ -42,17 +30,6 @@ std::optional<vec2> Camera::film_of(const vec3& point) const {
     }
     const float phi = std::atan2(aside.x, ahead), theta = std::acos(aside.y / glm::length(to_point));
     return vec2(size.x * (phi / (2 * PI) + 0.5f), size.y * theta / PI);
-}
-
-Ray Camera::ray(const vec2& film, const vec2& u_lens) const {
-    const Ray through_centre = pinhole_ray(film);
-    if (settings_.lens_radius <= 0 || !settings_.perspective) return through_centre;
-    // All rays of a film point meet in the plane in focus, at focal_depth along dir.
-    const vec2 lens = settings_.lens_radius * uniform_disc(u_lens);
-    const vec3 offset = lens.x * right_ + lens.y * up_;
-    const vec3 to_focus =
-        through_centre.direction * (settings_.focal_depth / glm::dot(through_centre.direction, forward_));
-    return {settings_.pos + offset, glm::normalize(to_focus - offset)};
 }
 
 float Camera::depth(const vec3& point) const {

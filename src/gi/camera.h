@@ -24,10 +24,34 @@ class Camera {
 
     /// The ray through a film position in pixels, (0, 0) the top left corner, and a uniform point of the
     /// lens.
-    Ray ray(const vec2& film, const vec2& u_lens) const;
+    template <class V2, class F = NumberOf<V2>>
+    RayOf<F> ray(const V2& film, const V2& u_lens) const {
+        const RayOf<F> through_centre = pinhole_ray(film);
+        if (settings_.lens_radius <= 0 || !settings_.perspective) return through_centre;
+        // All rays of a film point meet in the plane in focus, at focal_depth along dir.
+        const V2 lens = uniform_disc(u_lens);
+        const Vec3<F> offset =
+            settings_.lens_radius * lens.x * Vec3<F>(right_) + settings_.lens_radius * lens.y * Vec3<F>(up_);
+        const F depth = settings_.focal_depth / dot(through_centre.direction, Vec3<F>(forward_));
+        return {through_centre.origin + offset, normalize(through_centre.direction * depth - offset)};
+    }
 
     /// The same for the pinhole in the middle of the lens.
-    Ray pinhole_ray(const vec2& film) const;
+    template <class V2, class F = NumberOf<V2>>
+    RayOf<F> pinhole_ray(const V2& film) const {
+        const Vec3<F> forward(forward_), right(right_), up(up_);
+        const float w = static_cast<float>(width_), h = static_cast<float>(height_);
+        if (!settings_.perspective) {
+            F sin_theta, cos_theta, sin_phi, cos_phi;
+            sin_cos_of_turns(film.y * (0.5f / h), sin_theta, cos_theta);
+            sin_cos_of_turns(film.x * (1 / w) - 0.5f, sin_phi, cos_phi);
+            const Vec3<F> level = cos_phi * forward + sin_phi * right;
+            return {Vec3<F>(settings_.pos), sin_theta * level + cos_theta * up};
+        }
+        // Pixels are square: one scale for both axes, set by the height.
+        const F x = (2 * film.x - w) / h, y = (h - 2 * film.y) / h;
+        return {Vec3<F>(settings_.pos), normalize(forward + tan_half_fov_ * (x * right + y * up))};
+    }
 
     /// Where that pinhole sees a point: the inverse of the above. Empty behind a perspective camera; may be
     /// outside of the film.

@@ -18,20 +18,29 @@ class Filter {
     explicit Filter(Kind kind);
 
     /// Offset from the pixel's centre, in pixels.
-    vec2 sample(const vec2& u) const { return {sample_1d(u.x), sample_1d(u.y)}; }
+    template <class V2>
+    V2 sample(const V2& u) const {
+        return {sample_1d(u.x), sample_1d(u.y)};
+    }
 
   private:
     static constexpr int CELLS = 256;
 
-    float sample_1d(float u) const {
+    template <class F>
+    F sample_1d(const F& u) const {
         if (kind_ == Kind::box) return u - 0.5f;
         // The filter is even, and its tail beyond a distance is tabulated over its fourth root: in equal
         // shares of the whole the last cell would spread over a third of the radius.
-        const float cell = std::sqrt(std::sqrt(2 * std::min(u, 1 - u))) * CELLS;
-        const int i = std::min(static_cast<int>(cell), CELLS - 1);
-        const float distance =
-            distances_[i] + (cell - static_cast<float>(i)) * (distances_[i + 1] - distances_[i]);
-        return u < 0.5f ? -distance : distance;
+        const F cell = sqrt(sqrt(2 * min(u, 1 - u))) * CELLS;
+        const F i = min(floor(cell), F(CELLS - 1));
+        const F low = distance_at(i);
+        const F distance = low + (cell - i) * (distance_at(i + 1) - low);
+        return select(u < 0.5f, -distance, distance);
+    }
+    float distance_at(float i) const { return distances_[static_cast<int>(i)]; }
+    Lanes distance_at(const Lanes& i) const {
+        const PerLane<float> all = to_array(i);
+        return lanes_of([&](size_t lane) { return distance_at(all[lane]); });
     }
 
     Kind kind_;

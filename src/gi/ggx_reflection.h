@@ -11,26 +11,29 @@ template <class Derived>
 struct GgxReflection : Bsdf {
     static constexpr bool is_reciprocal = true;
 
-    static vec3 albedo(const Surface& surface) { return surface.tint() * Derived::fresnel(surface, 1); }
+    static vec3 albedo(const Surface& surface) { return surface.tint() * Derived::fresnel(surface, 1.f); }
 
-    static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi) {
-        if (wi.z <= 0) return vec3(0);
-        const float fresnel = Derived::fresnel(surface, glm::dot(wo, Ggx::half(wo, wi)));
-        return surface.tint() * (fresnel * Ggx(surface.roughness).reflection(wo, wi));
+    template <class F>
+    static Vec3<F> f(const SurfaceOf<F>& surface, const Vec3<F>& wo, const Vec3<F>& wi) {
+        const F fresnel = Derived::fresnel(surface, dot(wo, half_vector(wo, wi)));
+        const F reflection = fresnel * Ggx<F>(surface.roughness).reflection(wo, wi);
+        return select(wi.z > 0, surface.tint() * reflection, Vec3<F>(0));
     }
 
-    static float pdf(const Surface& surface, const vec3& wo, const vec3& wi) {
-        return wi.z > 0 ? Ggx(surface.roughness).reflection_pdf(wo, wi) : 0;
+    template <class F>
+    static F pdf(const SurfaceOf<F>& surface, const Vec3<F>& wo, const Vec3<F>& wi) {
+        return select(wi.z > 0, Ggx<F>(surface.roughness).reflection_pdf(wo, wi), F(0));
     }
 
-    static std::optional<BsdfSample> sample(const Surface& surface, const vec3& wo, float, const vec2& u) {
-        const Ggx ggx(surface.roughness);
-        const vec3 h = ggx.sample_visible(wo, u);
-        const vec3 wi = Ggx::mirrored(wo, h);
-        if (wi.z <= 0) return std::nullopt;
-        const float fresnel = Derived::fresnel(surface, glm::dot(wo, h));
-        const vec3 weight = surface.tint() * (fresnel * ggx.G2(wo, wi) / ggx.G1(wo));
-        return BsdfSample{wi, weight, ggx.reflection_pdf(wo, wi), BRDF_GLOSSY};
+    template <class F>
+    static BsdfSampleOf<F> sample(const SurfaceOf<F>& surface, const Vec3<F>& wo, const F&,
+                                  const Vec2<F>& u) {
+        const Ggx<F> ggx(surface.roughness);
+        const Vec3<F> h = ggx.sample_visible(wo, u);
+        const Vec3<F> wi = mirrored(wo, h);
+        const F fresnel = Derived::fresnel(surface, dot(wo, h));
+        const Vec3<F> weight = surface.tint() * (fresnel * ggx.G2(wo, wi) / ggx.G1(wo));
+        return {wi.z > 0, wi, weight, ggx.reflection_pdf(wo, wi), BRDF_GLOSSY};
     }
 };
 

@@ -4,10 +4,8 @@
 
 namespace etendue {
 
-namespace {
-
-/// The normal mapped by a tangent-space texture; the tangent follows the texture's u.
-vec3 mapped_normal(const Texture& texture, const Mesh& mesh, uint32_t triangle, const vec2& uv,
+// The tangent follows the texture's u.
+vec3 mapped_normal(const Material& material, const Mesh& mesh, uint32_t triangle, const vec2& barycentrics,
                    const vec3& normal) {
     if (mesh.uvs.empty()) return normal;
     const auto& [p0, p1, p2] = mesh.facets[triangle].corners;
@@ -22,11 +20,9 @@ vec3 mapped_normal(const Texture& texture, const Mesh& mesh, uint32_t triangle, 
     const vec3 s = glm::normalize(tangent);
     vec3 t = glm::cross(normal, s);
     if (glm::dot(t, dpdv) < 0) t = -t;
-    const vec3 local = texture.normal(uv);
+    const vec3 local = material.normal_texture->normal(mesh.uv(triangle, barycentrics));
     return glm::normalize(local.x * s + local.y * t + local.z * normal);
 }
-
-}  // namespace
 
 SurfaceHit::SurfaceHit(const Ray& ray, float distance, const Mesh& mesh, uint32_t triangle, const vec2& b,
                        const Material& material, const Light* light)
@@ -45,7 +41,7 @@ SurfaceHit::SurfaceHit(const Ray& ray, float distance, const Mesh& mesh, uint32_
     }
     front = glm::dot(point.normal, wo) > 0;
     if (!front) point.normal = -point.normal;
-    const bool is_flat = !mesh.facets[triangle].smooth && !material.normal_texture;
+    const bool is_flat = mesh.facets[triangle].smooth == 0 && !material.normal_texture;
     frame = Frame(is_flat ? point.normal : shading_normal());
     wo_local = frame.to_local(wo);
     surface_.albedo = material.albedo;
@@ -66,22 +62,14 @@ vec3 SurfaceHit::shading_normal() const {
     // As the mesh has it, on the front.
     const vec3 geometric = front ? point.normal : -point.normal;
     vec3 n = geometric;
-    if (mesh->facets[triangle].smooth) {
+    if (mesh->facets[triangle].smooth > 0) {
         const auto& [n0, n1, n2] = mesh->shading[triangle].normals;
         const vec3 smooth = (1 - b.x - b.y) * n0 + b.x * n1 + b.y * n2;
         if (length2(smooth) > 0) n = glm::normalize(smooth);
         if (glm::dot(n, geometric) < 0) n = -n;
     }
-    if (material->normal_texture) n = mapped_normal(*material->normal_texture, *mesh, triangle, uv(), n);
-    if (!front) n = -n;
-    // Seen at a grazing angle a shading normal would mirror the view into the surface, or even face away from
-    // it.  It is bent just so far that the mirrored direction clears the surface: no black rims, and wo.z >
-    // 0.
-    const vec3 mirrored = 2 * glm::dot(n, wo) * n - wo;
-    const float above = glm::dot(mirrored, point.normal);
-    const float least = std::min(0.01f, 0.9f * glm::dot(wo, point.normal));
-    if (above >= least) return n;
-    return glm::normalize(wo + glm::normalize(mirrored + (least - above) * point.normal));
+    if (material->normal_texture) n = mapped_normal(*material, *mesh, triangle, b, n);
+    return clear_of_surface(front ? n : -n, wo, point.normal);
 }
 
 vec3 SurfaceHit::Le() const {
@@ -101,13 +89,11 @@ float SurfaceHit::pdf(const vec3& wi) const {
     return bsdf_pdf(material->bsdf, surface(), wo_local, local);
 }
 
-std::optional<BsdfSample> SurfaceHit::sample(float lobe, const vec2& u) const {
-    // One variable is what every path returns, so that it is never copied.
-    auto sample = bsdf_sample(material->bsdf, surface(), wo_local, lobe, u);
-    if (!sample) return sample;
-    const bool above = sample->wi.z > 0;
-    sample->wi = frame.to_world(sample->wi);
-    if (above != (glm::dot(sample->wi, point.normal) > 0)) sample.reset();
+BsdfSample SurfaceHit::sample(float lobe, const vec2& u) const {
+    BsdfSample sample = bsdf_sample(material->bsdf, surface(), wo_local, lobe, u);
+    const bool above = sample.wi.z > 0;
+    sample.wi = frame.to_world(sample.wi);
+    if (above != (glm::dot(sample.wi, point.normal) > 0)) sample.exists = false;
     return sample;
 }
 

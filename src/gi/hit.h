@@ -1,16 +1,32 @@
 // What a ray found: the point, its surface ready to be shaded, and the light that shines from there.
 #pragma once
 
-#include <optional>
-
 #include "gi/bsdf.h"
 #include "gi/material.h"
 #include "gi/mesh.h"
+#include "gi/microfacet.h"
 #include "gi/ray.h"
 
 namespace etendue {
 
 class Light;
+
+/// Seen at a grazing angle a shading normal would mirror the view into the surface, or even face away from it. It is bent
+/// just so far that the mirrored direction clears the surface: no black rims, and wo.z > 0. All unit, and `geometric` on
+/// the side of wo.
+template <class V, class F = NumberOf<V>>
+V clear_of_surface(const V& normal, const V& wo, const V& geometric) {
+    const V mirror = mirrored(wo, normal);
+    const F above = dot(mirror, geometric);
+    const F least = min(F(0.01f), 0.9f * dot(wo, geometric));
+    const Mask<F> bends = above < least;
+    if (!any(bends)) return normal;
+    return select(bends, normalize(wo + normalize(mirror + (least - above) * geometric)), normal);
+}
+
+/// The normal mapped by a material's texture around the unit normal `normal` of a triangle's front.
+vec3 mapped_normal(const Material& material, const Mesh& mesh, uint32_t triangle, const vec2& barycentrics,
+                   const vec3& normal);
 
 /// The exercise's SurfaceInteraction. Where the ray left the scene `valid` is false, and `light` is the sky,
 /// if there is one.
@@ -58,7 +74,7 @@ struct SurfaceHit {
     // geometric normal, and below for the other, carries no light: f, pdf and sample agree on that.
     vec3 f(const vec3& wi) const;
     float pdf(const vec3& wi) const;
-    std::optional<BsdfSample> sample(float lobe, const vec2& u) const;
+    BsdfSample sample(float lobe, const vec2& u) const;
 
     /// The ray that leaves this point in a unit direction.
     Ray ray_towards(const vec3& wi) const { return {point.offset_towards(wi), wi}; }

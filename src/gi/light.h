@@ -17,12 +17,18 @@ class Light {
     /// All lights of a scene, kind by kind, as each kind finds its own.
     static std::vector<Light> find_all(const LightContext& context);
 
-    /// A point of one triangle of the light's mesh, or of the whole sky. Empty where it cannot shine on `reference`.
-    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u,
-                                         bool with_mis) const {
+    /// A point of one triangle of the light's mesh, or of the whole sky.
+    LightSample sample_Li(const vec3& reference, uint32_t triangle, const vec2& u, bool with_mis) const {
         return std::visit(
             [&](const auto& light) { return light.sample_Li(reference, triangle, u, with_mis); }, kind_);
     }
+    /// The same for points in lanes, each with a light and a triangle of its own.
+    static LightSampleOf<Lanes> sample_Li(const LaneMask& on, const LaneVec3& reference,
+                                          const PerLane<const Light*>& lights,
+                                          const PerLane<uint32_t>& triangles, const LaneVec2& u,
+                                          bool with_mis);
+    /// What the rays of lanes found by chance: Le and pdf_Li.
+    static FoundLightOf<Lanes> found(const LaneMask& on, const SurfaceHits& hits, bool with_mis);
     /// Density with which sample_Li would have drawn the direction `-hit.wo` in which a ray from the
     /// reference point, `hit.distance` away, found this triangle of the light.
     float pdf_Li(const SurfaceHit& hit, bool with_mis) const {
@@ -60,7 +66,13 @@ class Light {
     }
 
   private:
-    std::variant<ETENDUE_LIGHTS> kind_;
+    using Kinds = std::variant<ETENDUE_LIGHTS>;
+
+    /// Calls visit(mask, lights) for each kind of which there are any in the lanes that are `on`: in which, and which.
+    template <class Visit>
+    static void for_kinds(const LaneMask& on, const PerLane<const Light*>& lights, const Visit& visit);
+
+    Kinds kind_;
 };
 
 }  // namespace etendue

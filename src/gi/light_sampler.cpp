@@ -40,26 +40,62 @@ LightSampler::LightSampler(std::span<const Light> lights) : lights_(lights), fir
     triangles_share_ = of_triangles / by_power_.total();
 }
 
+LightSampler::Choice LightSampler::of_all(double u) const {
+    const auto choice = by_power_.sample(u);
+    const auto [light, triangle] = emitters_[choice.index];
+    return {light, triangle, choice.pmf, choice.remapped};
+}
+
+LightSampler::Choice LightSampler::of_others(double u, double share) const {
+    const auto choice = others_.sample(std::min((u - share) / (1 - share), 1 - 0x1p-53));
+    const auto [light, triangle] = emitters_[by_power_.size() - others_.size() + choice.index];
+    return {light, triangle, static_cast<float>(1 - share) * choice.pmf, choice.remapped};
+}
+
+LightSampler::Choice LightSampler::of_tree(const LightTree::Choice& choice, double share) const {
+    const auto [light, triangle] = emitters_[choice.emitter];
+    return {light, triangle, static_cast<float>(share) * choice.pmf,
+            std::min(static_cast<float>(choice.remapped), ONE_MINUS_EPSILON)};
+}
+
 std::optional<LightSampler::Choice> LightSampler::sample(Kind kind, const vec3& reference, double u,
                                                          const LightFactors* learned) const {
     if (by_power_.total() <= 0) return std::nullopt;
-    if (kind == Kind::power || tree_.empty()) {
-        const auto choice = by_power_.sample(u);
-        const auto [light, triangle] = emitters_[choice.index];
-        return Choice{light, triangle, choice.pmf, choice.remapped};
-    }
+    if (kind == Kind::power || tree_.empty()) return of_all(u);
     const double share = share_of_tree(learned);
-    if (u < share) {
-        const auto choice =
-            tree_.sample(reference, std::min(u / share, 1 - 0x1p-52), learned ? &learned->tree : nullptr);
-        if (!choice) return std::nullopt;
-        const auto [light, triangle] = emitters_[choice->emitter];
-        return Choice{light, triangle, static_cast<float>(share) * choice->pmf,
-                      std::min(static_cast<float>(choice->remapped), ONE_MINUS_EPSILON)};
+    if (u >= share) return of_others(u, share);
+    const auto choice = tree_.sample(reference, within(u, share), learned ? &learned->tree : nullptr);
+    if (!choice) return std::nullopt;
+    return of_tree(*choice, share);
+}
+
+PerLane<std::optional<LightSampler::Choice>> LightSampler::sample(
+    Kind kind, const LaneMask& on, const LaneVec3& references, const PerLane<double>& u,
+    const PerLane<const LightFactors*>& learned) const {
+    PerLane<std::optional<Choice>> out;
+    if (by_power_.total() <= 0) return out;
+    if (kind == Kind::power || tree_.empty()) {
+        for_lanes(on, [&](int i) { out[i] = of_all(u[i]); });
+        return out;
     }
-    const auto choice = others_.sample(std::min((u - share) / (1 - share), 1 - 0x1p-53));
-    const auto [light, triangle] = emitters_[by_power_.size() - others_.size() + choice.index];
-    return Choice{light, triangle, static_cast<float>(1 - share) * choice.pmf, choice.remapped};
+    PerLane<bool> by_tree{};
+    PerLane<double> shares{}, remapped{};
+    PerLane<const LightTree::Factors*> factors{};
+    for_lanes(on, [&](int i) {
+        shares[i] = share_of_tree(learned[i]);
+        by_tree[i] = u[i] < shares[i];
+        if (!by_tree[i]) {
+            out[i] = of_others(u[i], shares[i]);
+            return;
+        }
+        remapped[i] = within(u[i], shares[i]);
+        factors[i] = learned[i] ? &learned[i]->tree : nullptr;
+    });
+    const auto choices = tree_.sample(mask_of(by_tree), references, remapped, factors);
+    for (int i = 0; i < LANES; ++i) {
+        if (const auto& choice = choices[i]) out[i] = of_tree(*choice, shares[i]);
+    }
+    return out;
 }
 
 float LightSampler::pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle,

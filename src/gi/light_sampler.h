@@ -37,6 +37,10 @@ class LightSampler {
     /// than a float, as many as both the choice and `remapped` need. `learned` counts for the tree alone.
     std::optional<Choice> sample(Kind kind, const vec3& reference, double u,
                                  const LightFactors* learned = nullptr) const;
+    /// The same for references in lanes.
+    PerLane<std::optional<Choice>> sample(Kind kind, const LaneMask& on, const LaneVec3& references,
+                                          const PerLane<double>& u,
+                                          const PerLane<const LightFactors*>& learned) const;
     float pmf(Kind kind, const vec3& reference, const Light* light, uint32_t triangle,
               const LightFactors* learned = nullptr) const;
 
@@ -58,6 +62,12 @@ class LightSampler {
         const Light* light;
         uint32_t triangle;
     };
+
+    Choice of_all(double u) const;
+    Choice of_others(double u, double share) const;
+    Choice of_tree(const LightTree::Choice& choice, double share) const;
+    /// What is left of `u` for the tree, which has this share.
+    static double within(double u, double share) { return std::min(u / share, 1 - 0x1p-52); }
 
     std::span<const Light> lights_;
     // All triangles of all lights, then the sky.

@@ -1,5 +1,7 @@
 #include "gi/light_tree.h"
 
+#include <utility>
+
 namespace etendue {
 
 namespace {
@@ -217,27 +219,68 @@ inline LightTree::Importances LightTree::importances(const Node& node, const vec
     return out;
 }
 
+inline void LightTree::step(Descent& descent, const vec3& reference, const Factors* factors) const {
+    const Node& node = nodes_[descent.node];
+    const Importances importance = importances(node, reference, factors, descent.depth, descent.root_slot);
+    const Sums before = sums_before(importance);
+    const auto total = static_cast<float>(before[WIDTH]);
+    descent.ended = !may_choose(total);
+    if (descent.ended) return;
+    // Below the last sum, as u is at most 1 - 2^-52: what is chosen has an importance.
+    const double target = descent.u * before[WIDTH];
+    uint32_t chosen = 0;
+    // Without a branch, which would be guessed wrong every other time.
+    for (uint32_t slot = 1; slot < WIDTH; ++slot) chosen += before[slot] <= target;
+    descent.pmf *= importance[chosen] / total;
+    descent.u = std::min((target - before[chosen]) / importance[chosen], 1 - 0x1p-52);
+    if (descent.depth++ == 0) descent.root_slot = chosen;
+    const uint32_t child = node.child[chosen];
+    if (child & LEAF)
+        descent.emitter = child & ~LEAF;
+    else
+        descent.node = child;
+}
+
 std::optional<LightTree::Choice> LightTree::sample(const vec3& reference, double u,
                                                    const Factors* factors) const {
     if (nodes_.empty()) return std::nullopt;
-    float pmf = 1;
-    for (uint32_t index = 0, depth = 0, root_slot = 0;; ++depth) {
-        const Node& node = nodes_[index];
-        const Importances importance = importances(node, reference, factors, depth, root_slot);
-        const Sums before = sums_before(importance);
-        const auto total = static_cast<float>(before[WIDTH]);
-        if (!may_choose(total)) return std::nullopt;
-        // Below the last sum, as u is at most 1 - 2^-52: what is chosen has an importance.
-        const double target = u * before[WIDTH];
-        uint32_t chosen = 0;
-        // Without a branch, which would be guessed wrong every other time.
-        for (uint32_t slot = 1; slot < WIDTH; ++slot) chosen += before[slot] <= target;
-        pmf *= importance[chosen] / total;
-        u = std::min((target - before[chosen]) / importance[chosen], 1 - 0x1p-52);
-        index = node.child[chosen];
-        if (index & LEAF) return Choice{index & ~LEAF, pmf, u};
-        if (depth == 0) root_slot = chosen;
+    Descent descent;
+    descent.u = u;
+    while (!descent.emitter) {
+        step(descent, reference, factors);
+        if (descent.ended) return std::nullopt;
     }
+    return Choice{*descent.emitter, descent.pmf, descent.u};
+}
+
+PerLane<std::optional<LightTree::Choice>> LightTree::sample(const LaneMask& on, const LaneVec3& references,
+                                                            const PerLane<double>& u,
+                                                            const PerLane<const Factors*>& factors) const {
+    PerLane<std::optional<Choice>> out;
+    if (nodes_.empty()) return out;
+    PerLane<Descent> descents;
+    PerLane<int> under_way;
+    int count = 0;
+    for_lanes(on, [&](int i) {
+        descents[i].u = u[i];
+        under_way[count++] = i;
+    });
+    while (count > 0) {
+        const int before = std::exchange(count, 0);
+        for (int k = 0; k < before; ++k) {
+            const int i = under_way[k];
+            Descent& descent = descents[i];
+            step(descent, references.lane(i), factors[i]);
+            if (descent.ended) continue;
+            if (descent.emitter) {
+                out[i] = {*descent.emitter, descent.pmf, descent.u};
+            } else {
+                prefetch_lines(&nodes_[descent.node], sizeof(Node));
+                under_way[count++] = i;
+            }
+        }
+    }
+    return out;
 }
 
 float LightTree::pmf(const vec3& reference, uint32_t emitter, const Factors* factors) const {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "gi/math.h"
+#include "gi/memory.h"
 
 namespace etendue {
 
@@ -81,6 +82,10 @@ class LightTree {
     /// Empty where no light of the emitters can arrive, or where the choice led to some of which none can. `u` is in
     /// [0, 1 - 2^-52].
     std::optional<Choice> sample(const vec3& reference, double u, const Factors* factors = nullptr) const;
+    /// The same for references in lanes, level by level, so that the nodes that they lead to come from memory meanwhile.
+    PerLane<std::optional<Choice>> sample(const LaneMask& on, const LaneVec3& references,
+                                          const PerLane<double>& u,
+                                          const PerLane<const Factors*>& factors) const;
     /// Probability with which `sample` chooses this emitter.
     float pmf(const vec3& reference, uint32_t emitter, const Factors* factors = nullptr) const;
 
@@ -102,6 +107,17 @@ class LightTree {
 
         void set(uint32_t slot, const EmitterBounds& bounds);
     };
+    /// A choice on its way down.
+    struct Descent {
+        double u = 0;
+        uint32_t node = 0, depth = 0, root_slot = 0;
+        float pmf = 1;
+        std::optional<uint32_t> emitter;  // once it has arrived
+        bool ended = false;               // where there was nothing to choose
+    };
+    /// One step down.
+    void step(Descent& descent, const vec3& reference, const Factors* factors) const;
+
     using Importances = std::array<float, WIDTH>;
     // In double, as what is chosen rarely must be so as often as it says.
     using Sums = std::array<double, WIDTH + 1>;

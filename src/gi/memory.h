@@ -18,6 +18,11 @@ inline void prefetch(const void* place) {
     asm volatile("");
 }
 
+inline void prefetch_lines(const void* place, size_t bytes) {
+    constexpr size_t LINE = 64;
+    for (size_t i = 0; i < bytes; i += LINE) prefetch(static_cast<const char*>(place) + i);
+}
+
 /// Large arrays in huge pages, as otherwise most reads of a ray miss the TLB; and what a vector grows by is left as it
 /// is, to be written by many threads at once rather than zeroed by one.
 template <class T>

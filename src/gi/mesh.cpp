@@ -16,7 +16,8 @@ bool are_same(const vec3& a, const vec3& b) {
 
 }  // namespace
 
-Facet::Facet(const vec3& v0, const vec3& v1, const vec3& v2) : corners{v0, v1, v2}, smooth(false) {
+Facet::Facet(const vec3& v0, const vec3& v1, const vec3& v2) : smooth(0) {
+    corners = {v0, v1, v2};
     const vec3 edge1 = v1 - v0, edge2 = v2 - v0;
     const float size = std::max(max_component(absolute(edge1)), max_component(absolute(edge2)));
     // Scaled first: the square of a small triangle's area would underflow to a normal of NaN.
@@ -49,7 +50,7 @@ void Mesh::pack(std::span<Facet> facet_memory, std::span<FacetShading> shading_m
             }
             if (!uvs.empty()) shading[t].uvs[corner] = uvs[vertex];
         }
-        facet.smooth = smooth;
+        facet.smooth = smooth ? 1.f : 0.f;
     };
     constexpr size_t BLOCK = 4096;
     oneapi::tbb::parallel_for(size_t{0}, (triangles.size() + BLOCK - 1) / BLOCK, [&](size_t block) {

@@ -10,19 +10,40 @@
 
 namespace etendue {
 
+template <class F>
+struct TriangleOf {
+    std::array<Vec3<F>, 3> corners;
+    Vec3<F> normal;  // of the front, unit
+    F reach;         // see SurfacePoint
+    F area;
+
+    SurfacePointOf<F> point(const Vec2<F>& b) const {
+        return {(1 - b.x - b.y) * corners[0] + b.x * corners[1] + b.y * corners[2], normal, reach};
+    }
+};
+
 /// What every hit wants to know of its triangle, in one line of the cache.
-struct alignas(64) Facet {
-    std::array<vec3, 3> corners;
-    vec3 normal;  // of the front, unit
-    float reach;  // see SurfacePoint
-    float area;
-    bool smooth;  // the normals at its corners are others
+struct alignas(64) Facet : TriangleOf<float> {
+    float smooth;  // 1 where the normals at its corners are others, else 0
 
     Facet() = default;
     Facet(const vec3& v0, const vec3& v1, const vec3& v2);
+};
 
-    SurfacePoint point(const vec2& b) const {
-        return {(1 - b.x - b.y) * corners[0] + b.x * corners[1] + b.y * corners[2], normal, reach};
+/// For lanes that have no triangle.
+inline const Facet NO_FACET({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+
+/// A facet for each lane.
+struct FacetLanes : TriangleOf<Lanes> {
+    Lanes smooth;
+
+    ETENDUE_LANES_INLINE explicit FacetLanes(const PerLane<const Facet*>& facets) {
+        PerLane<const float*> lines;
+        for (int i = 0; i < LANES; ++i) lines[i] = &facets[i]->corners[0].x;
+        const LineColumns columns = columns_of(lines);
+        corners = {vector_at(columns, 0), vector_at(columns, 3), vector_at(columns, 6)};
+        normal = vector_at(columns, 9);
+        reach = columns[12], area = columns[13], smooth = columns[14];
     }
 };
 

@@ -5,23 +5,27 @@
 
 namespace etendue {
 
-struct Ray {
-    vec3 origin;
-    vec3 direction;          // unit, but for shadow rays, which span the distance
-    float t_max = INFINITE;  // in lengths of `direction`
+template <class F>
+struct RayOf {
+    Vec3<F> origin;
+    Vec3<F> direction;   // unit, but for shadow rays, which span the distance
+    F t_max = INFINITE;  // in lengths of `direction`
 };
+using Ray = RayOf<float>;
 
 /// A point of a surface, and the surface's unit normal there.
-struct SurfacePoint {
-    vec3 position{0};
-    vec3 normal{0, 0, 1};
-    float reach = 0;  // how far along the normal the true point may be from this one, rounding included
+template <class F>
+struct SurfacePointOf {
+    Vec3<F> position{0};
+    Vec3<F> normal{0, 0, 1};
+    F reach = 0;  // how far along the normal the true point may be from this one, rounding included
 
     /// An origin for rays that leave towards `direction`: past the plane of every point that this one may
     /// stand for (pbrt 4th ed., 6.8.6), so at the scene's own scale, near or far from the world's origin.
-    vec3 offset_towards(const vec3& direction) const {
-        return position + std::copysign(reach, glm::dot(direction, normal)) * normal;
+    Vec3<F> offset_towards(const Vec3<F>& direction) const {
+        return position + copysign(reach, dot(direction, normal)) * normal;
     }
 };
+using SurfacePoint = SurfacePointOf<float>;
 
 }  // namespace etendue

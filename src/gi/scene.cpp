@@ -42,6 +42,25 @@ void set_ray(RTCRay& r, const Ray& ray) {
     r.flags = 0;
 }
 
+/// Rays in lanes, one after the other.
+class RayArrays {
+  public:
+    explicit RayArrays(const LaneRays& rays)
+        : origin_{to_array(rays.origin.x), to_array(rays.origin.y), to_array(rays.origin.z)},
+          direction_{to_array(rays.direction.x), to_array(rays.direction.y), to_array(rays.direction.z)},
+          t_max_(to_array(rays.t_max)) {}
+
+    Ray operator[](int i) const {
+        return {{origin_[0][i], origin_[1][i], origin_[2][i]},
+                {direction_[0][i], direction_[1][i], direction_[2][i]},
+                t_max_[i]};
+    }
+
+  private:
+    std::array<PerLane<float>, 3> origin_, direction_;
+    PerLane<float> t_max_;
+};
+
 }  // namespace
 
 struct Scene::Geometry {
@@ -168,7 +187,7 @@ Scene::Scene(std::shared_ptr<const Geometry> geometry, std::vector<Material> mat
     for (const Mesh& mesh : meshes()) {
         if (mesh.material >= materials_.size())
             throw std::invalid_argument("a mesh names a material that is not there");
-        parts_.push_back({&mesh, &materials_[mesh.material], nullptr});
+        parts_.emplace_back(mesh, materials_[mesh.material]);
     }
     const float radius = lower().x <= upper().x ? glm::length(upper() - lower()) / 2 : 1.f;
     lights_ = Light::find_all({meshes(), materials_, sky_image_ ? &*sky_image_ : nullptr, radius});
@@ -202,6 +221,34 @@ Scene::Found Scene::first(const Ray& ray) const {
     static_assert(NONE == RTC_INVALID_GEOMETRY_ID);
     const RTCRayHit found = geometry_->first_hit(ray);
     return {found.hit.geomID, found.hit.primID, found.ray.tfar, {found.hit.u, found.hit.v}};
+}
+
+FoundHits Scene::first(const LaneRays& rays, const LaneMask& on) const {
+    FoundHits hits;
+    const RayArrays arrays(rays);
+    for_lanes(on, [&](int i) {
+        const Found found = first(arrays[i]);
+        hits.valid[i] = found.mesh != NONE;
+        if (!hits.valid[i]) {
+            hits.light[i] = sky_;
+            return;
+        }
+        const ScenePart& part = parts_[found.mesh];
+        part.mesh->prefetch(found.triangle);
+        hits.distance[i] = found.distance;
+        hits.b1[i] = found.barycentrics.x, hits.b2[i] = found.barycentrics.y;
+        hits.triangle[i] = found.triangle;
+        hits.part[i] = &part;
+        hits.light[i] = part.light;
+    });
+    return hits;
+}
+
+LaneMask Scene::occluded(const LaneRays& rays, const LaneMask& on) const {
+    PerLane<bool> is_occluded{};
+    const RayArrays arrays(rays);
+    for_lanes(on, [&](int i) { is_occluded[i] = occluded(arrays[i]); });
+    return mask_of(is_occluded);
 }
 
 bool Scene::occluded(const Ray& ray) const {
@@ -249,13 +296,5 @@ size_t Scene::memory_bytes() const {
 }
 
 std::string embree_version() { return RTC_VERSION_STRING; }
-
-Ray shadow_ray(const SurfaceHit& hit, const LightSample& sample) {
-    const vec3 origin = hit.point.offset_towards(sample.wi);
-    if (sample.infinite) return {origin, sample.wi, INFINITE};
-    // Ends short of the light by the error of the point there, and by the rounding of the difference itself.
-    const vec3 target = sample.point.offset_towards(-sample.wi);
-    return {origin, target - origin, 1 - 4 * std::numeric_limits<float>::epsilon()};
-}
 
 }  // namespace etendue

@@ -45,7 +45,7 @@ class Scene {
     SurfaceHit intersect(const Ray& ray, const Work& meanwhile) const {
         const Found found = first(ray);
         if (found.mesh == NONE) return {ray, sky_};
-        const Part& part = parts_[found.mesh];
+        const ScenePart& part = parts_[found.mesh];
         part.mesh->prefetch(found.triangle);
         meanwhile();
         return {ray,       found.distance, *part.mesh, found.triangle, found.barycentrics, *part.material,
@@ -54,8 +54,16 @@ class Scene {
     SurfaceHit intersect(const Ray& ray) const {
         return intersect(ray, [] {});
     }
+    /// The same for the rays of the lanes that are `on`.
+    template <class Work>
+    SurfaceHits intersect(const LaneRays& rays, const LaneMask& on, const Work& meanwhile) const {
+        const FoundHits found = first(rays, on);
+        meanwhile();
+        return {rays, on, found};
+    }
     /// Whether anything is between two points, or along the ray before t_max.
     bool occluded(const Ray& ray) const;
+    LaneMask occluded(const LaneRays& rays, const LaneMask& on) const;
     /// Traces all of these and does nothing else, as fast as the library does. Returns how many hit something.
     uint64_t trace(std::span<const TracedRay> rays) const;
 
@@ -94,12 +102,8 @@ class Scene {
     };
     static constexpr uint32_t NONE = ~0u;
     Found first(const Ray& ray) const;
-    /// What belongs to a mesh, by its index; `light` is null where it does not emit.
-    struct Part {
-        const Mesh* mesh;
-        const Material* material;
-        const Light* light;
-    };
+    /// What is known of the triangles is asked for, to come from memory.
+    FoundHits first(const LaneRays& rays, const LaneMask& on) const;
 
     Scene(std::shared_ptr<const Geometry> geometry, std::vector<Material> materials, std::optional<Sky> sky);
 
@@ -107,16 +111,12 @@ class Scene {
     std::vector<Material> materials_;
     std::optional<Sky> sky_image_;
     std::vector<Light> lights_;
-    std::vector<Part> parts_;
+    std::vector<ScenePart> parts_;  // by the index of a mesh
     const Light* sky_ = nullptr;
     LightSampler light_sampler_;
 };
 
 /// Version of the library that traces rays.
 std::string embree_version();
-
-/// The ray that asks whether a light sample is visible: between the two surfaces, each offset by its own
-/// error.
-Ray shadow_ray(const SurfaceHit& hit, const LightSample& sample);
 
 }  // namespace etendue

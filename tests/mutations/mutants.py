@@ -47,36 +47,36 @@ MUTANTS = (
     Mutant(
         "roulette without reweighting",
         "algorithms/russian_roulette.h",
-        "throughput /= 1 - q",
-        "throughput /= 1",
+        "throughput / (1 - q)",
+        "throughput",
         furnace(),
     ),
     Mutant(
         "light-selection probability missing",
         "algorithms/direct_light.h",
-        "choice.pmf * sample->pdf",
-        "sample->pdf",
+        "pmf * light.pdf",
+        "light.pdf",
         (ANALYTIC, "-k", "two_lamps"),
     ),
     Mutant(
         "light-selection probability missing in the weight of light found by chance",
         "algorithms/pathtracer.cpp",
-        "context.scene.light_source_pdf(kind, reference, hit.light, hit.triangle, learned)",
-        "1",
+        "choice_pmfs(context, paths, hits, could_be_sampled) * light.pdf",
+        "light.pdf",
         (ANALYTIC, "-k", "two_lamps"),
     ),
     Mutant(
         "cosine twice",
         "algorithms/direct_light.h",
-        "std::abs(glm::dot(sample->wi, hit.frame.n))",
-        "sqr(glm::dot(sample->wi, hit.frame.n))",
+        "abs(dot(light.wi, shading_normal))",
+        "sqr(dot(light.wi, shading_normal))",
         (ANALYTIC, "-k", "disc_over or uniform_sky"),
     ),
     Mutant(
         "area pdf not converted to solid angle",
         "gi/lights/area_light.cpp",
-        "distance2 / (cos_light * facet.area)",
-        "1 / facet.area",
+        "distance2 / (cos_light * triangle.area)",
+        "1 / triangle.area",
         (ANALYTIC, "-k", "disc_over"),
     ),
     Mutant(
@@ -103,8 +103,8 @@ MUTANTS = (
     Mutant(
         "what was learned of lights forgotten in the weight of light found by chance",
         "algorithms/pathtracer.cpp",
-        "light_pdf(context, prev_position, prev_learned, hit)",
-        "light_pdf(context, prev_position, nullptr, hit)",
+        "paths.prev_learned[i]",
+        "nullptr",
         (GUIDE, "-k", "same_picture"),
     ),
     Mutant(
@@ -117,8 +117,8 @@ MUTANTS = (
     Mutant(
         "points crowd in a corner of a triangle",
         "gi/sampling.h",
-        "u - std::min(u.x, u.y) / 2",
-        "u * u - std::min(u.x * u.x, u.y * u.y) / 2",
+        "u.y - half",
+        "u.y * (u.y - half)",
         (ANALYTIC, "-k", "parallel_plates"),
     ),
     Mutant(
@@ -131,22 +131,22 @@ MUTANTS = (
     Mutant(
         "light found by chance counted beside light sampling",
         "algorithms/direct_light.h",
-        "light_pdf > 0 ? 0 : 1",
-        "1",
+        "select(light_pdf > 0, F(0), F(1))",
+        "F(1)",
         furnace(),
     ),
     Mutant(
         "power heuristic that is none",
         "gi/sampling.h",
         "1 / (1 + sqr(pdf_b / pdf_a))",
-        "1 / (1 + pdf_b / pdf_a * std::sqrt(pdf_b / pdf_a) / 2)",
+        "1 / (1 + pdf_b / pdf_a * sqrt(pdf_b / pdf_a) / 2)",
         furnace(),
     ),
     Mutant(
         "every bounce taken for a delta bounce",
         "algorithms/pathtracer.cpp",
-        "bounce->is_delta()",
-        "true",
+        "bounce.is_delta()",
+        "LaneMask(true)",
         furnace(),
     ),
     Mutant(
@@ -159,8 +159,8 @@ MUTANTS = (
     Mutant(
         "sky sampled where it is not seen",
         "gi/lights/sky_light.cpp",
-        "2 * PI * turns",
-        "-2 * PI * turns",
+        "sin_cos_of_turns(turns,",
+        "sin_cos_of_turns(-turns,",
         (LIGHTS,),
     ),
     Mutant(
@@ -174,7 +174,7 @@ MUTANTS = (
         "Jacobian of the half vector missing",
         "gi/microfacet.h",
         "D(wo + wi) / (2 * (wo.z + root(wo)))",
-        "D(wo + wi) * 4 * glm::dot(wo, half(wo, wi)) / (2 * (wo.z + root(wo)))",
+        "D(wo + wi) * 4 * dot(wo, half_vector(wo, wi)) / (2 * (wo.z + root(wo)))",
         (BSDF,),
     ),
     Mutant(
@@ -192,37 +192,51 @@ MUTANTS = (
         (BSDF,),
     ),
     Mutant(
+        "a path that begins with what the one before it in its lane carried",
+        "algorithms/lane_paths.h",
+        "select(on, LaneVec3(1), throughput)",
+        "throughput",
+        furnace(),
+    ),
+    Mutant(
+        "light of one lane counted for all",
+        "algorithms/lane_context.h",
+        "select(on, found.unweighted * found.weight, LaneVec3(0))",
+        "found.unweighted * found.weight",
+        (ANALYTIC, "-k", "two_lamps"),
+    ),
+    Mutant(
         "last vertex looks for light beyond the path length",
         "algorithms/pathtracer.cpp",
-        "depth == MAX_CAM_PATH_LENGTH",
-        "depth > MAX_CAM_PATH_LENGTH",
+        "paths.edges < MAX_CAM_PATH_LENGTH",
+        "paths.edges <= MAX_CAM_PATH_LENGTH",
         furnace(),
     ),
     Mutant(
         "shadows forgotten",
         "algorithms/direct_light.h",
-        "context.visible(connection.shadow_ray)",
-        "true",
+        "context.visible(connection.shadow_ray, asked)",
+        "asked",
         (ANALYTIC, "-k", "two_lamps"),
     ),
     Mutant(
         "radiance not compressed by refraction",
         "gi/bsdfs/glass.h",
-        "surface.albedo / sqr(eta)",
+        "surface.albedo / eta2",
         "surface.albedo",
         (ANALYTIC, "-k", "lamp_inside_glass"),
     ),
     Mutant(
         "Fresnel as weight and as probability",
         "gi/bsdfs/glass.h",
-        "surface.albedo, reflectance, BRDF_SPECULAR",
-        "surface.albedo * reflectance, reflectance, BRDF_SPECULAR",
+        "select(reflects, F(1), sqr(eta))",
+        "select(reflects, 1 / reflectance, sqr(eta))",
         (ANALYTIC, "-k", "glass_slabs"),
     ),
     Mutant(
         "refraction always into the glass",
         "gi/bsdf.h",
-        "front ? ior : 1 / ior",
+        "select(front, ior, 1 / ior)",
         "ior",
         (ANALYTIC, "-k", "glass_slabs"),
     ),
@@ -243,16 +257,15 @@ MUTANTS = (
     Mutant(
         "Sobol's second coordinate is its first",
         "gi/sampler.h",
-        "scramble(second_coordinate_reversed(index), h2)",
-        "scramble(index, h2)",
+        "second_coordinate_reversed(index_)",
+        "index_",
         (SAMPLER,),
     ),
 )
 
 # Statements cannot stand in `? :`; these mutants differ in an operand instead.
 _OPERANDS = {
-    "throughput /= 1 - q": ("throughput /= ", "1 - q", "1"),
-    "surface.albedo, reflectance, BRDF_SPECULAR": ("", "surface.albedo", "surface.albedo * reflectance"),
+    "sin_cos_of_turns(turns,": ("sin_cos_of_turns(", "turns", "-turns"),
 }
 
 SWITCH = """#pragma once

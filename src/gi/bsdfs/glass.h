@@ -21,16 +21,22 @@ struct Glass : Bsdf {
          .albedo = {64 / 255.f, 164 / 255.f, 223 / 255.f}},
     };
 
-    static std::optional<BsdfSample> sample(const Surface& surface, const vec3& wo, float lobe, const vec2&) {
-        const float eta = surface.eta();
-        const float reflectance = fresnel_dielectric(wo.z, eta);
-        if (lobe < reflectance)
-            return BsdfSample{vec3(-wo.x, -wo.y, wo.z), surface.albedo, reflectance, BRDF_SPECULAR};
-        const auto wi = refract(wo, eta);
-        if (!wi) return std::nullopt;
+    template <class F>
+    static BsdfSampleOf<F> sample(const SurfaceOf<F>& surface, const Vec3<F>& wo, const F& lobe,
+                                  const Vec2<F>&) {
+        const F eta = surface.eta();
+        const F reflectance = fresnel_dielectric(wo.z, eta);
+        // On total reflection the reflectance is 1, above every `lobe`.
+        const Mask<F> reflects = lobe < reflectance;
+        const Vec3<F> wi = select(reflects, Vec3<F>(-wo.x, -wo.y, wo.z), refract(wo, eta));
         // Radiance gathers or spreads with the solid angle as it crosses the boundary (pbrt 4th ed., 9.5.2).
-        return BsdfSample{*wi, surface.albedo / sqr(eta), 1 - reflectance, BRDF_SPECULAR | BRDF_TRANSMISSION,
-                          sqr(eta)};
+        const F eta2 = select(reflects, F(1), sqr(eta));
+        return {Mask<F>(true),
+                wi,
+                surface.albedo / eta2,
+                select(reflects, reflectance, 1 - reflectance),
+                select(reflects, F(BRDF_SPECULAR), F(BRDF_SPECULAR | BRDF_TRANSMISSION)),
+                eta2};
     }
 };
 

@@ -25,38 +25,43 @@ struct LayeredGgx : Bsdf {
     };
 
     static vec3 albedo(const Surface& surface) {
-        const float coat = fresnel_dielectric(1, surface.ior);
+        const float coat = fresnel_dielectric(1.f, surface.ior);
         return coat * surface.tint() + (1 - coat) * surface.albedo;
     }
 
-    static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi) {
-        return wi.z > 0 ? f(surface, wo, wi, fresnel_dielectric(wo.z, surface.ior)) : vec3(0);
+    template <class F>
+    static Vec3<F> f(const SurfaceOf<F>& surface, const Vec3<F>& wo, const Vec3<F>& wi) {
+        return select(wi.z > 0, f(surface, wo, wi, fresnel_dielectric(wo.z, surface.ior)), Vec3<F>(0));
     }
 
-    static float pdf(const Surface& surface, const vec3& wo, const vec3& wi) {
-        return wi.z > 0 ? pdf(surface, wo, wi, fresnel_dielectric(wo.z, surface.ior)) : 0;
+    template <class F>
+    static F pdf(const SurfaceOf<F>& surface, const Vec3<F>& wo, const Vec3<F>& wi) {
+        return select(wi.z > 0, pdf(surface, wo, wi, fresnel_dielectric(wo.z, surface.ior)), F(0));
     }
 
-    static std::optional<BsdfSample> sample(const Surface& surface, const vec3& wo, float lobe,
-                                            const vec2& u) {
-        const float coat = fresnel_dielectric(wo.z, surface.ior);
-        const bool on_coat = lobe < coat;
-        const vec3 wi =
-            on_coat ? Ggx::mirrored(wo, Ggx(surface.roughness).sample_visible(wo, u)) : cosine_hemisphere(u);
-        const float pdf_wi = wi.z > 0 ? pdf(surface, wo, wi, coat) : 0;
-        if (pdf_wi <= 0) return std::nullopt;
-        const uint8_t type = on_coat ? BRDF_GLOSSY : BRDF_DIFFUSE;
-        return BsdfSample{wi, f(surface, wo, wi, coat) * wi.z / pdf_wi, pdf_wi, type};
+    template <class F>
+    static BsdfSampleOf<F> sample(const SurfaceOf<F>& surface, const Vec3<F>& wo, const F& lobe,
+                                  const Vec2<F>& u) {
+        const F coat = fresnel_dielectric(wo.z, surface.ior);
+        const Mask<F> on_coat = lobe < coat;
+        Vec3<F> wi = cosine_hemisphere(u);
+        if (any(on_coat))
+            wi = select(on_coat, mirrored(wo, Ggx<F>(surface.roughness).sample_visible(wo, u)), wi);
+        const F pdf_wi = pdf(surface, wo, wi, coat);
+        return {wi.z > 0 && pdf_wi > 0, wi, f(surface, wo, wi, coat) * wi.z / pdf_wi, pdf_wi,
+                select(on_coat, F(BRDF_GLOSSY), F(BRDF_DIFFUSE))};
     }
 
   private:
     // Above the surface, with the reflectance of the coat at wo.
-    static vec3 f(const Surface& surface, const vec3& wo, const vec3& wi, float coat) {
-        return coat * Ggx(surface.roughness).reflection(wo, wi) * surface.tint() +
+    template <class F>
+    static Vec3<F> f(const SurfaceOf<F>& surface, const Vec3<F>& wo, const Vec3<F>& wi, const F& coat) {
+        return coat * Ggx<F>(surface.roughness).reflection(wo, wi) * surface.tint() +
                (1 - coat) * INV_PI * surface.albedo;
     }
-    static float pdf(const Surface& surface, const vec3& wo, const vec3& wi, float coat) {
-        return coat * Ggx(surface.roughness).reflection_pdf(wo, wi) +
+    template <class F>
+    static F pdf(const SurfaceOf<F>& surface, const Vec3<F>& wo, const Vec3<F>& wi, const F& coat) {
+        return coat * Ggx<F>(surface.roughness).reflection_pdf(wo, wi) +
                (1 - coat) * cosine_hemisphere_pdf(wi.z);
     }
 };

@@ -42,9 +42,10 @@ struct Metal : GgxReflection<Metal> {
          .albedo = {176 / 255.f, 72 / 255.f, 33 / 255.f}},
     };
 
-    static float fresnel(const Surface& surface, float cos_h) {
+    template <class F>
+    static F fresnel(const SurfaceOf<F>& surface, const F& cos_h) {
         // Where nothing is reflected rounding leaves a little less than that.
-        return std::max(fresnel_conductor(cos_h, surface.ior, surface.absorb), 0.f);
+        return max(fresnel_conductor(cos_h, surface.ior, surface.absorb), F(0));
     }
 };
 

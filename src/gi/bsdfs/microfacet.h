@@ -13,7 +13,8 @@ struct Microfacet : GgxReflection<Microfacet> {
         {.name = "microfacet", .summary = summary, .order = 60, .match = {"microfacet"}, .ior = 2.42f},
     };
 
-    static float fresnel(const Surface& surface, float cos_h) {
+    template <class F>
+    static F fresnel(const SurfaceOf<F>& surface, const F& cos_h) {
         return fresnel_dielectric(cos_h, surface.ior);
     }
 };

@@ -14,11 +14,14 @@ struct Specular : Bsdf {
         {.name = "specular", .summary = summary, .order = 40, .match = {"specular"}, .ior = 1.52f},
     };
 
-    static vec3 albedo(const Surface& surface) { return surface.albedo * fresnel_dielectric(1, surface.ior); }
+    static vec3 albedo(const Surface& surface) {
+        return surface.albedo * fresnel_dielectric(1.f, surface.ior);
+    }
 
-    static std::optional<BsdfSample> sample(const Surface& surface, const vec3& wo, float, const vec2&) {
-        return BsdfSample{vec3(-wo.x, -wo.y, wo.z), surface.albedo * fresnel_dielectric(wo.z, surface.ior), 1,
-                          BRDF_SPECULAR};
+    template <class F>
+    static BsdfSampleOf<F> sample(const SurfaceOf<F>& surface, const Vec3<F>& wo, const F&, const Vec2<F>&) {
+        const Vec3<F> weight = surface.albedo * fresnel_dielectric(wo.z, surface.ior);
+        return {Mask<F>(true), Vec3<F>(-wo.x, -wo.y, wo.z), weight, 1, BRDF_SPECULAR};
     }
 };
 

@@ -12,16 +12,20 @@ struct Translucent : Bsdf {
         {.name = "translucent", .summary = summary, .order = 80, .match = {"translucent"}, .ior = 1.52f},
     };
 
-    static vec3 f(const Surface& surface, const vec3&, const vec3& wi) {
-        return wi.z < 0 ? surface.albedo * INV_PI : vec3(0);
+    template <class F>
+    static Vec3<F> f(const SurfaceOf<F>& surface, const Vec3<F>&, const Vec3<F>& wi) {
+        return select(wi.z < 0, surface.albedo * F(INV_PI), Vec3<F>(0));
     }
 
-    static float pdf(const Surface&, const vec3&, const vec3& wi) { return cosine_hemisphere_pdf(-wi.z); }
+    template <class F>
+    static F pdf(const SurfaceOf<F>&, const Vec3<F>&, const Vec3<F>& wi) {
+        return cosine_hemisphere_pdf(-wi.z);
+    }
 
-    static std::optional<BsdfSample> sample(const Surface& surface, const vec3&, float, const vec2& u) {
-        const vec3 wi = -cosine_hemisphere(u);
-        if (wi.z >= 0) return std::nullopt;
-        return BsdfSample{wi, surface.albedo, cosine_hemisphere_pdf(-wi.z), BRDF_DIFFUSE | BRDF_TRANSMISSION};
+    template <class F>
+    static BsdfSampleOf<F> sample(const SurfaceOf<F>& surface, const Vec3<F>&, const F&, const Vec2<F>& u) {
+        const Vec3<F> wi = -cosine_hemisphere(u);
+        return {wi.z < 0, wi, surface.albedo, cosine_hemisphere_pdf(-wi.z), BRDF_DIFFUSE | BRDF_TRANSMISSION};
     }
 };
 

@@ -5,11 +5,20 @@ namespace etendue {
 namespace {
 
 /// Image coordinates of a direction, u and v in [0, 1].
-vec2 uv_of(const vec3& direction) {
-    const float turns = fast_atan2(direction.z, direction.x) * (INV_PI / 2);
+template <class V, class F = NumberOf<V>>
+Vec2<F> uv_of(const V& direction) {
+    const F turns = fast_atan2(direction.z, direction.x) * (INV_PI / 2);
     // acos loses its digits at the poles.
-    const float theta = fast_atan2(std::sqrt(sqr(direction.x) + sqr(direction.z)), direction.y);
-    return {turns < 0 ? turns + 1 : turns, theta * INV_PI};
+    const F theta = fast_atan2(sqrt(sqr(direction.x) + sqr(direction.z)), direction.y);
+    return {select(turns < 0, turns + 1, turns), theta * INV_PI};
+}
+
+/// A direction by the cosine of its angle from +Y, and turns around it.
+template <class F>
+Vec3<F> direction_of(const F& cos_theta, const F& sin_theta, const F& turns) {
+    F sin_phi = 0, cos_phi = 0;
+    sin_cos_of_turns(turns, sin_phi, cos_phi);
+    return {sin_theta * cos_phi, cos_theta, sin_theta * sin_phi};
 }
 
 }  // namespace
@@ -80,36 +89,111 @@ vec3 SkyLight::radiance_at(const vec2& uv) const {
                 y = uv.y * static_cast<float>(sky_->height) - 0.5f;
     const float x_floor = std::floor(x), y_floor = std::floor(y);
     const auto ix = static_cast<int32_t>(x_floor), iy = static_cast<int32_t>(y_floor);
-    const vec3 top = glm::mix(pixel(ix, iy), pixel(ix + 1, iy), x - x_floor);
-    const vec3 bottom = glm::mix(pixel(ix, iy + 1), pixel(ix + 1, iy + 1), x - x_floor);
-    return glm::mix(top, bottom, y - y_floor) * sky_->intensity;
+    const vec3 top = mixed(pixel(ix, iy), pixel(ix + 1, iy), x - x_floor);
+    const vec3 bottom = mixed(pixel(ix, iy + 1), pixel(ix + 1, iy + 1), x - x_floor);
+    return mixed(top, bottom, y - y_floor) * sky_->intensity;
 }
 
-std::optional<LightSample> SkyLight::sample_Li(const vec3&, uint32_t, const vec2& u, bool with_mis) const {
+LaneVec3 SkyLight::radiance_at(const LaneMask& on, const LaneVec2& uv) const {
+    const Lanes x = uv.x * static_cast<float>(sky_->width) - 0.5f,
+                y = uv.y * static_cast<float>(sky_->height) - 0.5f;
+    const Lanes x_floor = floor(x), y_floor = floor(y);
+    const PerLane<float> all_x = to_array(x_floor), all_y = to_array(y_floor);
+    VectorArrays top_left, top_right, bottom_left, bottom_right;
+    for_lanes(on, [&](int i) {
+        const auto ix = static_cast<int32_t>(all_x[i]), iy = static_cast<int32_t>(all_y[i]);
+        top_left.set(i, pixel(ix, iy)), top_right.set(i, pixel(ix + 1, iy));
+        bottom_left.set(i, pixel(ix, iy + 1)), bottom_right.set(i, pixel(ix + 1, iy + 1));
+    });
+    const LaneVec3 top = mixed(top_left.lanes(), top_right.lanes(), x - x_floor);
+    const LaneVec3 bottom = mixed(bottom_left.lanes(), bottom_right.lanes(), x - x_floor);
+    return mixed(top, bottom, y - y_floor) * sky_->intensity;
+}
+
+void SkyLight::prefetch_around(uint32_t x, uint32_t y) const {
+    for (int32_t dy = -1; dy <= 1; ++dy)
+        prefetch(&pixel(static_cast<int32_t>(x), static_cast<int32_t>(y) + dy));
+}
+
+std::pair<uint32_t, uint32_t> SkyLight::cell_at(const vec2& uv) const {
+    const uint32_t w = sky_->width, h = sky_->height;
+    return {std::min(static_cast<uint32_t>(uv.x * static_cast<float>(w)), w - 1),
+            std::min(static_cast<uint32_t>(uv.y * static_cast<float>(h)), h - 1)};
+}
+
+LightSample SkyLight::sample_Li(const vec3&, uint32_t, const vec2& u, bool with_mis) const {
     if (sky_->width == 0) {
-        return LightSample{vec3(sky_->intensity), uniform_sphere(u), UNIFORM_SPHERE_PDF, {}, true};
+        return {true, vec3(sky_->intensity), uniform_sphere(u), UNIFORM_SPHERE_PDF, {}, true};
     }
-    if (cells_.total() <= 0) return std::nullopt;
+    if (cells_.total() <= 0) return {};
     // A cell by its power, then uniformly in solid angle within it.
     const Distribution2D::Choice cell = cells(with_mis).sample(u);
-    for (int32_t dy = -1; dy <= 1; ++dy)
-        prefetch(&pixel(static_cast<int32_t>(cell.x), static_cast<int32_t>(cell.y) + dy));
-    const float cos_theta = glm::mix(row_cosines_[cell.y], row_cosines_[cell.y + 1], cell.remapped.y);
+    prefetch_around(cell.x, cell.y);
+    const float cos_theta = mixed(row_cosines_[cell.y], row_cosines_[cell.y + 1], cell.remapped.y);
     const float sin_theta = safe_sqrt(1 - cos_theta * cos_theta);
     const float turns = (static_cast<float>(cell.x) + cell.remapped.x) / static_cast<float>(sky_->width);
-    const float phi = 2 * PI * turns;
-    const vec3 wi(sin_theta * std::cos(phi), cos_theta, sin_theta * std::sin(phi));
     const vec3 radiance = radiance_at({turns, fast_atan2(sin_theta, cos_theta) * INV_PI});
-    return LightSample{radiance, wi, pdf_in_row(cell.y, cell.pmf), {}, true};
+    return {true, radiance, direction_of(cos_theta, sin_theta, turns), pdf_in_row(cell.y, cell.pmf),
+            {},   true};
+}
+
+[[gnu::flatten]] LightSampleOf<Lanes> SkyLight::sample_Li(const LaneMask& on, const LaneVec3&,
+                                                          const PerLane<const SkyLight*>& skies,
+                                                          const PerLane<uint32_t>&, const LaneVec2& u,
+                                                          bool with_mis) {
+    const SkyLight& sky = *skies[find_first_set(on)];
+    LightSampleOf<Lanes> out;
+    out.infinite = LaneMask(true);
+    if (sky.sky_->width == 0) {
+        out.exists = on;
+        out.radiance = LaneVec3(sky.sky_->intensity);
+        out.wi = uniform_sphere(u);
+        out.pdf = UNIFORM_SPHERE_PDF;
+        return out;
+    }
+    if (sky.cells_.total() <= 0) return out;
+    out.exists = on;
+    PerLane<float> low{}, high{}, along_x{}, along_y{}, pdf{};
+    for_lanes(on, [&](int i) {
+        const Distribution2D::Choice cell = sky.cells(with_mis).sample({u.x[i], u.y[i]});
+        sky.prefetch_around(cell.x, cell.y);
+        low[i] = sky.row_cosines_[cell.y], high[i] = sky.row_cosines_[cell.y + 1];
+        along_y[i] = cell.remapped.y;
+        along_x[i] = (static_cast<float>(cell.x) + cell.remapped.x) / static_cast<float>(sky.sky_->width);
+        pdf[i] = sky.pdf_in_row(cell.y, cell.pmf);
+    });
+    const Lanes cos_theta = mixed(lanes_of(low), lanes_of(high), lanes_of(along_y));
+    const Lanes sin_theta = safe_sqrt(1 - cos_theta * cos_theta), turns = lanes_of(along_x);
+    out.wi = direction_of(cos_theta, sin_theta, turns);
+    out.radiance = sky.radiance_at(on, {turns, fast_atan2(sin_theta, cos_theta) * INV_PI});
+    out.pdf = lanes_of(pdf);
+    return out;
+}
+
+[[gnu::flatten]] FoundLightOf<Lanes> SkyLight::found(const LaneMask& on, const SurfaceHits& misses,
+                                                     const PerLane<const SkyLight*>& skies, bool with_mis) {
+    const SkyLight& sky = *skies[find_first_set(on)];
+    if (sky.sky_->width == 0) return {LaneVec3(sky.sky_->intensity), UNIFORM_SPHERE_PDF};
+    const LaneVec2 uv = uv_of(-misses.wo);
+    const PerLane<float> u = to_array(uv.x), v = to_array(uv.y);
+    for_lanes(on, [&](int i) {
+        const auto [x, y] = sky.cell_at({u[i], v[i]});
+        sky.prefetch_around(x, y);
+    });
+    PerLane<float> pdf{};
+    if (sky.cells_.total() > 0) {
+        for_lanes(on, [&](int i) {
+            const auto [x, y] = sky.cell_at({u[i], v[i]});
+            pdf[i] = sky.pdf_in_row(y, sky.cells(with_mis).pmf(x, y));
+        });
+    }
+    return {sky.radiance_at(on, uv), lanes_of(pdf)};
 }
 
 float SkyLight::pdf(const vec3& direction, bool with_mis) const {
     if (sky_->width == 0) return UNIFORM_SPHERE_PDF;
     if (cells_.total() <= 0) return 0;
-    const uint32_t w = cells_.width(), h = cells_.height();
-    const vec2 uv = uv_of(direction);
-    const uint32_t x = std::min(static_cast<uint32_t>(uv.x * static_cast<float>(w)), w - 1);
-    const uint32_t y = std::min(static_cast<uint32_t>(uv.y * static_cast<float>(h)), h - 1);
+    const auto [x, y] = cell_at(uv_of(direction));
     return pdf_in_row(y, cells(with_mis).pmf(x, y));
 }
 

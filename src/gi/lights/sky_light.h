@@ -4,6 +4,8 @@
 // phi).
 #pragma once
 
+#include <optional>
+
 #include "gi/distribution.h"
 #include "gi/light_sample.h"
 
@@ -27,8 +29,15 @@ class SkyLight {
 
     SkyLight(const Sky& sky, float scene_radius);
 
-    std::optional<LightSample> sample_Li(const vec3& reference, uint32_t triangle, const vec2& u,
-                                         bool with_mis) const;
+    LightSample sample_Li(const vec3& reference, uint32_t triangle, const vec2& u, bool with_mis) const;
+    // The same for lanes. A scene has one sky.
+    static LightSampleOf<Lanes> sample_Li(const LaneMask& on, const LaneVec3& reference,
+                                          const PerLane<const SkyLight*>& skies,
+                                          const PerLane<uint32_t>& triangles, const LaneVec2& u,
+                                          bool with_mis);
+    static FoundLightOf<Lanes> found(const LaneMask& on, const SurfaceHits& misses,
+                                     const PerLane<const SkyLight*>& skies, bool with_mis);
+
     float pdf_Li(const SurfaceHit& miss, bool with_mis) const { return pdf(-miss.wo, with_mis); }
     vec3 Le(const SurfaceHit& miss) const { return Le(-miss.wo); }
     vec3 Le(const vec3& direction) const;
@@ -41,6 +50,11 @@ class SkyLight {
   private:
     const vec3& pixel(int32_t x, int32_t y) const;
     vec3 radiance_at(const vec2& uv) const;
+    LaneVec3 radiance_at(const LaneMask& on, const LaneVec2& uv) const;
+    /// Asks for the pixels that `radiance_at` reads in a cell of the image.
+    void prefetch_around(uint32_t x, uint32_t y) const;
+    /// The cell of image coordinates.
+    std::pair<uint32_t, uint32_t> cell_at(const vec2& uv) const;
     /// Solid-angle density in a cell of row y that is chosen with probability `pmf`.
     float pdf_in_row(uint32_t y, float pmf) const;
 

@@ -1,0 +1,76 @@
+// What the rays of several paths found, in lanes: as SurfaceHit, which is for a ray alone.
+#pragma once
+
+#include "gi/hit.h"
+
+namespace etendue {
+
+using LaneRays = RayOf<Lanes>;
+
+/// A mesh with what belongs to it, and what a hit wants to know of its material, in a line of the cache.
+struct alignas(64) ScenePart {
+    ScenePart(const Mesh& mesh, const Material& material);
+
+    struct Line {
+        vec3 albedo;
+        float ior, roughness, absorb;
+        float bsdf;                                           // a BsdfKind
+        float coated, delta, textured, cut_out, has_normals;  // 1 or 0
+        float unused[4];
+    } line;
+    static_assert(sizeof(Line) == LINE_FLOATS * sizeof(float));
+    const Mesh* mesh;
+    const Material* material;
+    const Light* light = nullptr;  // null where it does not emit
+};
+
+/// What of the hits of rays the library tells, and whose they are.
+struct FoundHits {
+    PerLane<bool> valid{};
+    PerLane<float> distance{};
+    PerLane<float> b1{}, b2{};  // barycentrics of the hit in the triangle
+    PerLane<uint32_t> triangle{};
+    PerLane<const ScenePart*> part{};
+    // The part's, or the sky where a ray left the scene; null where nothing shines.
+    PerLane<const Light*> light{};
+
+    vec2 barycentrics(int lane) const { return {b1[lane], b2[lane]}; }
+    vec2 uv(int lane) const { return part[lane]->mesh->uv(triangle[lane], barycentrics(lane)); }
+};
+
+struct SurfaceHits {
+    /// Of the lanes `on`. Whatever else is in a lane that is not, or in one that hit nothing, means nothing.
+    SurfaceHits(const LaneRays& rays, const LaneMask& on, const FoundHits& found);
+
+    LaneMask valid;
+    LaneMask is_light;  // light may come from here, as of SurfaceHit
+    LaneMask is_delta;  // the BSDF is a pure Dirac delta
+    LaneMask front;
+    LaneVec3 wo;
+    SurfacePointOf<Lanes> point;  // its normal is geometric and on the side of wo
+    FrameOf<Lanes> frame;         // around the shading normal, on the side of wo
+    LaneVec3 wo_local;
+    FoundHits found;
+
+    // The BSDF in world directions, as of SurfaceHit.
+    BsdfValueOf<Lanes> values(const LaneMask& on, const LaneVec3& wi) const;
+    BsdfSampleOf<Lanes> sample(const LaneMask& on, const Lanes& lobe, const LaneVec2& u) const;
+
+    /// The rays that leave these points in unit directions.
+    LaneRays rays_towards(const LaneVec3& wi) const { return {point.offset_towards(wi), wi}; }
+
+    /// Reads the colours of textures, which were asked for when the hits were made. To be called before the BSDF.
+    void read_colours();
+
+    /// What a light wants to know of one of the hits.
+    SurfaceHit seen_by_light(int lane) const;
+
+  private:
+    LaneVec3 shading_normals(const LaneMask& smooth, const LaneMask& mapped) const;
+
+    SurfaceOf<Lanes> surface_;
+    Lanes bsdf_;  // kinds
+    LaneMask textured_;
+};
+
+}  // namespace etendue
