@@ -203,6 +203,9 @@ class Scene:
         pdf (n,), the choice of the light included. Occlusion is not looked at.
         """
 
+    def sample_light_in_lanes(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True, learned: LightFactors | None = None) -> dict:
+        """As `sample_light`, of many at once, as the path tracers do."""
+
     def light_pdf(self, reference: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], light_choice: str = 'tree', with_mis: bool = True, learned: LightFactors | None = None) -> tuple[Annotated[NDArray[numpy.int32], dict(shape=(None,))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
         """
         float32 (n, 3), (n, 3) -> index (n,) int32 of the light that each ray finds, -1 for none, and (n,): density of
@@ -218,6 +221,11 @@ class Scene:
         """
         float32 (n, 3), unit (n, 3). Returns a dict of distance (n,) (inf: miss), position (n, 3), normal and shading_normal
         (n, 3) on the ray's side, uv (n, 2) and material (n,) int32 (-1: miss).
+        """
+
+    def intersect_in_lanes(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], direction: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> dict:
+        """
+        position, normal and shading_normal of `intersect`, of many at once, as the path tracers do.
         """
 
     def occluded(self, origin: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], target: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,))]:
@@ -259,6 +267,14 @@ class Bsdf:
         Returns a dict of wi (n, 3), weight (n, 3) = f |cos| / pdf, pdf (n,), eta2 (n,) and type (n,) uint8 of BRDF_ bits;
         type is 0 where sampling failed.
         """
+
+    def values_in_lanes(self, wo: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> tuple:
+        """(f, pdf) of many at once, as the path tracers ask for them."""
+
+    def sample_in_lanes(self, wo: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], u: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> dict:
+        """As `sample`, of many at once, as the path tracers do."""
+
+LANES: int = 16
 
 def bsdfs() -> list[str]:
     """Names of all BSDFs."""
@@ -371,6 +387,9 @@ class Sampler:
         Samples first .. first + count of a pixel: the first `pairs` two-dimensional draws at a vertex of the path, float32
         (count, 2 pairs).
         """
+
+    def points_in_lanes(self, pixel: int, first: int, count: int, vertex: int = 0, pairs: int = 1) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
+        """As `points`, of many samples at once, as the path tracers do."""
 
     def numbers(self, pixel: int, first: int, count: int, vertex: int = 0, draws: int = 1) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
         """The same for one-dimensional draws: float32 (count, draws)."""

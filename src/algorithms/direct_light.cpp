@@ -2,10 +2,11 @@
 
 namespace etendue {
 
-[[gnu::flatten]] ConnectionOf<Lanes> connect_to_lights(LaneContext& context, const SurfaceHits& hits,
-                                                       const LaneMask& on, const LaneVec3& throughput,
-                                                       const Lanes& edges, LightSampler::Kind kind,
-                                                       const PerLane<const LightFactors*>& learned, Mis mis) {
+ETENDUE_LANES_FLATTEN ConnectionOf<Lanes> connect_to_lights(LaneContext& context, const SurfaceHits& hits,
+                                                            const LaneMask& on, const LaneVec3& throughput,
+                                                            const Lanes& edges, LightSampler::Kind kind,
+                                                            const PerLane<const LightFactors*>& learned,
+                                                            Mis mis) {
     const LaneMask asks = on && !hits.is_delta;
     if (!any(asks)) return {};
     const PerLane<float> finer_digits = to_array(context.sampler.next_1d(asks));

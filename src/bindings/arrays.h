@@ -50,6 +50,33 @@ void set_vec3(Array& a, size_t i, const vec3& v) {
     for (int c = 0; c < 3; ++c) a.data()[3 * i + c] = v[c];
 }
 
+/// Calls work(first, on) for rows in groups of as many as there are lanes; `on`: those that there are.
+template <class Work>
+void in_lanes(size_t rows, const Work& work) {
+    for (size_t first = 0; first < rows; first += LANES) {
+        PerLane<bool> on;
+        for (size_t i = 0; i < LANES; ++i) on[i] = first + i < rows;
+        work(first, mask_of(on));
+    }
+}
+
+/// Rows from `first` on, in the lanes that are `on`.
+inline LaneVec3 lanes_at(const Vectors3& a, size_t first, const LaneMask& on) {
+    VectorArrays out;
+    for_lanes(on, [&](int i) { out.set(i, vec3_at(a, first + static_cast<size_t>(i))); });
+    return out.lanes();
+}
+
+template <class Array>
+void set_lanes(Array& a, size_t first, const LaneMask& on, const LaneVec3& v) {
+    for_lanes(on, [&](int i) { set_vec3(a, first + static_cast<size_t>(i), v.lane(i)); });
+}
+template <class Array>
+void set_lanes(Array& a, size_t first, const LaneMask& on, const Lanes& v) {
+    using Value = typename Array::Scalar;
+    for_lanes(on, [&](int i) { a.data()[first + static_cast<size_t>(i)] = static_cast<Value>(v[i]); });
+}
+
 inline void require_same_length(size_t a, size_t b, const char* what) {
     if (a != b) throw std::invalid_argument(std::string(what) + " must have one row each");
 }

@@ -53,6 +53,46 @@ nb::dict draw_bsdf(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& u
     return out;
 }
 
+/// A BSDF's parameters in all lanes.
+SurfaceOf<Lanes> in_all_lanes(const Surface& s) {
+    return {LaneVec3(s.albedo), s.ior, s.roughness, s.absorb, LaneMask(s.coated), LaneMask(s.front)};
+}
+
+nb::tuple values_in_lanes(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& wi) {
+    require_same_length(wo.shape(0), wi.shape(0), "wo and wi");
+    auto f = new_array<OutVectors3>({wo.shape(0), 3});
+    auto pdf = new_array<OutScalars>({wo.shape(0)});
+    in_lanes(wo.shape(0), [&](size_t first, const LaneMask& on) {
+        const auto values = bsdf_values(on, bsdf.kind, in_all_lanes(bsdf.surface), lanes_at(wo, first, on),
+                                        lanes_at(wi, first, on));
+        set_lanes(f, first, on, values.f);
+        set_lanes(pdf, first, on, values.pdf);
+    });
+    return nb::make_tuple(f, pdf);
+}
+
+nb::dict draw_in_lanes(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& u) {
+    require_same_length(wo.shape(0), u.shape(0), "wo and u");
+    const size_t n = wo.shape(0);
+    auto wi = new_array<OutVectors3>({n, 3}), weight = new_array<OutVectors3>({n, 3});
+    auto pdf = new_array<OutScalars>({n}), eta2 = new_array<OutScalars>({n});
+    auto type = new_array<Out<uint8_t, nb::shape<-1>>>({n});
+    in_lanes(n, [&](size_t first, const LaneMask& on) {
+        const LaneVec3 numbers = lanes_at(u, first, on);
+        const auto samples = bsdf_samples(on, bsdf.kind, in_all_lanes(bsdf.surface), lanes_at(wo, first, on),
+                                          numbers.x, {numbers.y, numbers.z});
+        const LaneMask exists = on && samples.exists;
+        set_lanes(wi, first, exists, samples.wi);
+        set_lanes(weight, first, exists, samples.weight);
+        set_lanes(pdf, first, exists, samples.pdf);
+        set_lanes(eta2, first, exists, samples.eta2);
+        set_lanes(type, first, exists, samples.type);
+    });
+    nb::dict out;
+    out["wi"] = wi, out["weight"] = weight, out["pdf"] = pdf, out["eta2"] = eta2, out["type"] = type;
+    return out;
+}
+
 }  // namespace
 
 void bind_bsdf(nb::module_& m) {
@@ -88,7 +128,12 @@ void bind_bsdf(nb::module_& m) {
              "wo: float32 (n, 3). u: float32 (n, 3) in [0, 1): lobe choice and two for the direction.\n"
              "Returns a dict of wi (n, 3), weight (n, 3) = f |cos| / pdf, pdf (n,), eta2 (n,) and type (n,) "
              "uint8 of BRDF_ bits;\n"
-             "type is 0 where sampling failed.");
+             "type is 0 where sampling failed.")
+        .def("values_in_lanes", &values_in_lanes, nb::arg("wo"), nb::arg("wi"),
+             "(f, pdf) of many at once, as the path tracers ask for them.")
+        .def("sample_in_lanes", &draw_in_lanes, nb::arg("wo"), nb::arg("u"),
+             "As `sample`, of many at once, as the path tracers do.");
+    m.attr("LANES") = LANES;
     m.def(
         "bsdfs",
         [] {

@@ -153,6 +153,52 @@ nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vecto
     return out;
 }
 
+nb::dict sample_light_in_lanes(const Scene& scene, const Vectors3& reference, const Vectors2& u,
+                               const std::string& light_choice, bool with_mis, const LightFactors* learned) {
+    require_same_length(reference.shape(0), u.shape(0), "reference and u");
+    const size_t n = reference.shape(0);
+    const LightSampler::Kind kind = light_choice_named(light_choice);
+    auto index = new_array<Out<int32_t, nb::shape<-1>>>({n});
+    auto wi = new_array<OutVectors3>({n, 3}), radiance = new_array<OutVectors3>({n, 3}),
+         position = new_array<OutVectors3>({n, 3});
+    auto pdf = new_array<OutScalars>({n});
+    PerLane<const LightFactors*> all_learned;
+    all_learned.fill(learned);
+    in_lanes(n, [&](size_t first, const LaneMask& on) {
+        PerLane<double> numbers{};
+        PerLane<float> along{}, across{}, pmf{};
+        PerLane<bool> chosen{};
+        PerLane<const Light*> lights{};
+        PerLane<uint32_t> triangles{};
+        for_lanes(on, [&](int i) {
+            numbers[i] = u.data()[2 * (first + i)], across[i] = u.data()[2 * (first + i) + 1];
+        });
+        const LaneVec3 references = lanes_at(reference, first, on);
+        const auto choices = scene.light_sampler().sample(kind, on, references, numbers, all_learned);
+        for_lanes(on, [&](int i) {
+            index.data()[first + i] = -1;
+            const auto& choice = choices[i];
+            if (!choice) return;
+            chosen[i] = true;
+            lights[i] = choice->light, triangles[i] = choice->triangle;
+            along[i] = choice->remapped, pmf[i] = choice->pmf;
+        });
+        const LightSampleOf<Lanes> samples = Light::sample_Li(mask_of(chosen), references, lights, triangles,
+                                                              {lanes_of(along), lanes_of(across)}, with_mis);
+        for_lanes(samples.exists, [&](int i) {
+            index.data()[first + i] = static_cast<int32_t>(lights[i] - scene.lights().data());
+        });
+        set_lanes(wi, first, samples.exists, samples.wi);
+        set_lanes(radiance, first, samples.exists, samples.radiance);
+        set_lanes(position, first, samples.exists, samples.point.position);
+        set_lanes(pdf, first, samples.exists, lanes_of(pmf) * samples.pdf);
+    });
+    nb::dict out;
+    out["index"] = index, out["wi"] = wi, out["radiance"] = radiance, out["pdf"] = pdf,
+    out["position"] = position;
+    return out;
+}
+
 auto light_pdf(const Scene& scene, const Vectors3& reference, const Vectors3& wi,
                const std::string& light_choice, bool with_mis, const LightFactors* learned) {
     require_same_length(reference.shape(0), wi.shape(0), "reference and wi");
@@ -215,6 +261,10 @@ void bind_choice(nb::module_& m) {
               "(n, 3), position (n, 3) on the light and\npdf (n,), the choice of the light included. "
               "Occlusion is not "
               "looked at.");
+    scene.def("sample_light_in_lanes", &sample_light_in_lanes, nb::arg("reference"), nb::arg("u"),
+              nb::arg("light_choice") = "tree", nb::arg("with_mis") = true,
+              nb::arg("learned").none() = nb::none(),
+              "As `sample_light`, of many at once, as the path tracers do.");
     scene.def(
         "light_pdf", &light_pdf, nb::arg("reference"), nb::arg("wi"), nb::arg("light_choice") = "tree",
         nb::arg("with_mis") = true, nb::arg("learned").none() = nb::none(),

@@ -5,7 +5,7 @@
 #include "bindings/arrays.h"
 #include "gi/camera.h"
 #include "gi/filter.h"
-#include "gi/sampler.h"
+#include "gi/lane_sampler.h"
 #include "gi/scene.h"
 
 namespace etendue {
@@ -38,6 +38,42 @@ nb::dict intersect(const Scene& scene, const Vectors3& origin, const Vectors3& d
     return out;
 }
 
+nb::dict intersect_in_lanes(const Scene& scene, const Vectors3& origin, const Vectors3& direction) {
+    require_same_length(origin.shape(0), direction.shape(0), "origin and direction");
+    const size_t n = origin.shape(0);
+    auto position = new_array<OutVectors3>({n, 3}), normal = new_array<OutVectors3>({n, 3}),
+         shading = new_array<OutVectors3>({n, 3});
+    in_lanes(n, [&](size_t first, const LaneMask& on) {
+        const LaneRays rays{lanes_at(origin, first, on), lanes_at(direction, first, on)};
+        const SurfaceHits hits = scene.intersect(rays, on, [] {});
+        set_lanes(position, first, hits.valid, hits.point.position);
+        set_lanes(normal, first, hits.valid, hits.point.normal);
+        set_lanes(shading, first, hits.valid, hits.frame.n);
+    });
+    nb::dict out;
+    out["position"] = position, out["normal"] = normal, out["shading_normal"] = shading;
+    return out;
+}
+
+nb::ndarray<nb::numpy, float, nb::shape<-1, -1>> points_in_lanes(Sampler sampler, uint32_t pixel,
+                                                                 uint64_t first, size_t count,
+                                                                 uint32_t vertex, size_t pairs) {
+    auto out = new_array<Out<float, nb::shape<-1, -1>>>({count, 2 * pairs});
+    in_lanes(count, [&](size_t row, const LaneMask& on) {
+        LaneSampler numbers;
+        for (int i = 0; i < LANES; ++i) numbers.start(i, sampler.stream(pixel, first + row + i));
+        numbers.start_vertex(static_cast<float>(vertex));
+        for (size_t pair = 0; pair < pairs; ++pair) {
+            const LaneVec2 u = numbers.next_2d(on);
+            for_lanes(on, [&](int i) {
+                float* const place = out.data() + 2 * ((row + static_cast<size_t>(i)) * pairs + pair);
+                place[0] = u.x[i], place[1] = u.y[i];
+            });
+        }
+    });
+    return out;
+}
+
 void bind_queries(nb::module_& m) {
     // The scene's class is bound with its construction; what it can be asked is added to it here.
     auto scene = nb::borrow<nb::class_<Scene>>(m.attr("Scene"));
@@ -45,6 +81,8 @@ void bind_queries(nb::module_& m) {
               "float32 (n, 3), unit (n, 3). Returns a dict of distance (n,) (inf: miss), position (n, 3), "
               "normal and shading_normal\n"
               "(n, 3) on the ray's side, uv (n, 2) and material (n,) int32 (-1: miss).");
+    scene.def("intersect_in_lanes", &intersect_in_lanes, nb::arg("origin"), nb::arg("direction"),
+              "position, normal and shading_normal of `intersect`, of many at once, as the path tracers do.");
     scene.def(
         "occluded",
         [](const Scene& self, const Vectors3& from, const Vectors3& to) {
@@ -100,6 +138,15 @@ void bind_sampler(nb::module_& m) {
             "Samples first .. first + count of a pixel: the first `pairs` two-dimensional draws at a vertex "
             "of the path, float32\n"
             "(count, 2 pairs).")
+        .def(
+            "points_in_lanes",
+            [](const PythonSampler& self, uint32_t pixel, uint64_t first, size_t count, uint32_t vertex,
+               size_t pairs) {
+                return points_in_lanes({sampler_kind(self.kind), self.seed}, pixel, first, count, vertex,
+                                       pairs);
+            },
+            nb::arg("pixel"), nb::arg("first"), nb::arg("count"), nb::arg("vertex") = 0, nb::arg("pairs") = 1,
+            "As `points`, of many samples at once, as the path tracers do.")
         .def(
             "numbers",
             [](const PythonSampler& self, uint32_t pixel, uint64_t first, size_t count, uint32_t vertex,

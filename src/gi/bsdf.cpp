@@ -76,9 +76,9 @@ bool bsdf_is_delta(BsdfKind kind) {
     return Bsdfs::dispatch<bool>(kind, [](auto bsdf) { return decltype(bsdf)::is_delta; });
 }
 
-[[gnu::flatten]] BsdfValueOf<Lanes> bsdf_values(const LaneMask& on, const Lanes& kinds,
-                                                const SurfaceOf<Lanes>& surfaces, const LaneVec3& wo,
-                                                const LaneVec3& wi) {
+ETENDUE_LANES_FLATTEN BsdfValueOf<Lanes> bsdf_values(const LaneMask& on, const Lanes& kinds,
+                                                     const SurfaceOf<Lanes>& surfaces, const LaneVec3& wo,
+                                                     const LaneVec3& wi) {
     BsdfValueOf<Lanes> out;
     Bsdfs::for_kinds(on, kinds, [&](auto bsdf, const LaneMask& mask) {
         out.f = select(mask, decltype(bsdf)::f(surfaces, wo, wi), out.f);
@@ -87,9 +87,9 @@ bool bsdf_is_delta(BsdfKind kind) {
     return out;
 }
 
-[[gnu::flatten]] BsdfSampleOf<Lanes> bsdf_samples(const LaneMask& on, const Lanes& kinds,
-                                                  const SurfaceOf<Lanes>& surfaces, const LaneVec3& wo,
-                                                  const Lanes& lobe, const LaneVec2& u) {
+ETENDUE_LANES_FLATTEN BsdfSampleOf<Lanes> bsdf_samples(const LaneMask& on, const Lanes& kinds,
+                                                       const SurfaceOf<Lanes>& surfaces, const LaneVec3& wo,
+                                                       const Lanes& lobe, const LaneVec2& u) {
     BsdfSampleOf<Lanes> out;
     Bsdfs::for_kinds(on, kinds, [&](auto bsdf, const LaneMask& mask) {
         const BsdfSampleOf<Lanes> sample = decltype(bsdf)::sample(surfaces, wo, lobe, u);

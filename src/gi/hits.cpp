@@ -31,7 +31,8 @@ ScenePart::ScenePart(const Mesh& part_mesh, const Material& part_material)
       mesh(&part_mesh),
       material(&part_material) {}
 
-[[gnu::flatten]] SurfaceHits::SurfaceHits(const LaneRays& rays, const LaneMask& on, const FoundHits& hits)
+ETENDUE_LANES_FLATTEN SurfaceHits::SurfaceHits(const LaneRays& rays, const LaneMask& on,
+                                               const FoundHits& hits)
     : valid(on && mask_of(hits.valid)), wo(-rays.direction), found(hits) {
     PerLane<const Facet*> facets;
     PerLane<const float*> lines;

@@ -27,8 +27,14 @@ namespace etendue {
 
 namespace simd = std::experimental;
 
-// A call would have all registers saved around it.
+// A call would have all registers saved around it: what is small is always inline, and some functions have all that they
+// call inline, but for sanitizers, whose checks would make too much of them.
 #define ETENDUE_LANES_INLINE [[gnu::always_inline]] inline
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define ETENDUE_LANES_FLATTEN
+#else
+#define ETENDUE_LANES_FLATTEN [[gnu::flatten]]
+#endif
 
 using Lanes = simd::native_simd<float>;
 using LaneMask = Lanes::mask_type;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,12 +25,13 @@ def images() -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> np.ndarray:
-    """The same renders by a build for any x86-64, with Embree held to the oldest instructions it knows."""
-    core = builds.core_in(builds.build(builds.ROOT / "build" / "portable", "_core", "-DETENDUE_NATIVE=OFF"))
-    home = tmp_path_factory.mktemp("home")
-    for settings in (".embree3", ".embree4"):
-        (home / settings).write_text("isa=sse2\n")
+def portable() -> Path:
+    """A build for any x86-64: without fused multiply-add, and with 4 lanes."""
+    return builds.core_in(builds.build(builds.ROOT / "build" / "portable", "_core", "-DETENDUE_NATIVE=OFF"))
+
+
+def images_by(core: Path, home: Path) -> np.ndarray:
+    """The same renders by another build, with the Embree settings of a home folder."""
     file = home / "images.npy"
     code = (
         "import sys, numpy; sys.path.insert(0, sys.argv[3])\n"
@@ -48,8 +50,17 @@ def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_another_processor_gives_the_same_picture_but_for_rounding(elsewhere: np.ndarray) -> None:
-    here = images()
+def test_another_width_of_registers_gives_the_same_picture(portable: Path, tmp_path: Path) -> None:
+    np.testing.assert_array_equal(images_by(portable, tmp_path), images())
+
+
+@pytest.mark.slow
+def test_another_processor_gives_the_same_picture_but_for_the_rounding_of_embree(
+    portable: Path, tmp_path: Path
+) -> None:
+    for settings in (".embree3", ".embree4"):
+        (tmp_path / settings).write_text("isa=sse2\n")
+    here, elsewhere = images(), images_by(portable, tmp_path)
     difference = np.abs(here - elsewhere) / (here + 1e-6)
     # Without rounding's help a path takes the same turns, so most pixels agree to the last digits.
     assert np.median(difference) < 1e-5

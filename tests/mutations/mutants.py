@@ -174,7 +174,7 @@ MUTANTS = (
         "Jacobian of the half vector missing",
         "gi/microfacet.h",
         "D(wo + wi) / (2 * (wo.z + root(wo)))",
-        "D(wo + wi) * 4 * dot(wo, half_vector(wo, wi)) / (2 * (wo.z + root(wo)))",
+        "D(wo + wi) * 4 * dot(wo, normalize(wo + wi)) / (2 * (wo.z + root(wo)))",
         (BSDF,),
     ),
     Mutant(

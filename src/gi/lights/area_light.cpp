@@ -57,10 +57,10 @@ LightSample AreaLight::sample_Li(const vec3& reference, uint32_t triangle, const
     return sample;
 }
 
-[[gnu::flatten]] LightSampleOf<Lanes> AreaLight::sample_Li(const LaneMask& on, const LaneVec3& reference,
-                                                           const PerLane<const AreaLight*>& lights,
-                                                           const PerLane<uint32_t>& triangles,
-                                                           const LaneVec2& u, bool) {
+ETENDUE_LANES_FLATTEN LightSampleOf<Lanes> AreaLight::sample_Li(const LaneMask& on, const LaneVec3& reference,
+                                                                const PerLane<const AreaLight*>& lights,
+                                                                const PerLane<uint32_t>& triangles,
+                                                                const LaneVec2& u, bool) {
     PerLane<const Facet*> facets;
     facets.fill(&NO_FACET);
     for_lanes(on, [&](int i) { facets[i] = &lights[i]->mesh_->facets[triangles[i]]; });

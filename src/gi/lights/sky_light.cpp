@@ -137,10 +137,10 @@ LightSample SkyLight::sample_Li(const vec3&, uint32_t, const vec2& u, bool with_
             {},   true};
 }
 
-[[gnu::flatten]] LightSampleOf<Lanes> SkyLight::sample_Li(const LaneMask& on, const LaneVec3&,
-                                                          const PerLane<const SkyLight*>& skies,
-                                                          const PerLane<uint32_t>&, const LaneVec2& u,
-                                                          bool with_mis) {
+ETENDUE_LANES_FLATTEN LightSampleOf<Lanes> SkyLight::sample_Li(const LaneMask& on, const LaneVec3&,
+                                                               const PerLane<const SkyLight*>& skies,
+                                                               const PerLane<uint32_t>&, const LaneVec2& u,
+                                                               bool with_mis) {
     const SkyLight& sky = *skies[find_first_set(on)];
     LightSampleOf<Lanes> out;
     out.infinite = LaneMask(true);
@@ -170,8 +170,9 @@ LightSample SkyLight::sample_Li(const vec3&, uint32_t, const vec2& u, bool with_
     return out;
 }
 
-[[gnu::flatten]] FoundLightOf<Lanes> SkyLight::found(const LaneMask& on, const SurfaceHits& misses,
-                                                     const PerLane<const SkyLight*>& skies, bool with_mis) {
+ETENDUE_LANES_FLATTEN FoundLightOf<Lanes> SkyLight::found(const LaneMask& on, const SurfaceHits& misses,
+                                                          const PerLane<const SkyLight*>& skies,
+                                                          bool with_mis) {
     const SkyLight& sky = *skies[find_first_set(on)];
     if (sky.sky_->width == 0) return {LaneVec3(sky.sky_->intensity), UNIFORM_SPHERE_PDF};
     const LaneVec2 uv = uv_of(-misses.wo);
