@@ -260,25 +260,32 @@ bool LightGuide::learn(const Preparation& preparation, int max_edges, Mis mis) {
 const LightFactors* LightGuide::at(const vec3& position, const vec3& normal) const {
     if (of_small_.empty()) return nullptr;
     const uint32_t small = small_.find(position, normal);
-    if (small != Cells::NONE) return &of_small_[small];
-    const uint32_t large = large_.find(position, normal);
-    return large == Cells::NONE ? nullptr : &of_large_[large];
+    return small != Cells::NONE ? &of_small_[small] : in_large(position, normal);
 }
 
 PerLane<const LightFactors*> LightGuide::at(const LaneMask& on, const LaneVec3& positions,
                                             const LaneVec3& normals) const {
     PerLane<const LightFactors*> out{};
     if (of_small_.empty()) return out;
-    for_lanes(on, [&](int i) { small_.prefetch(positions.lane(i), normals.lane(i)); });
+    PerLane<uint64_t> keys{};
+    for_lanes(on, [&](int i) { keys[i] = small_.begin_find(positions.lane(i), normals.lane(i)); });
     for_lanes(on, [&](int i) {
-        out[i] = at(positions.lane(i), normals.lane(i));
+        const uint32_t small = small_.find(keys[i]);
+        out[i] = small != Cells::NONE ? &of_small_[small] : in_large(positions.lane(i), normals.lane(i));
         if (out[i]) prefetch(out[i]);
     });
     return out;
 }
 
-void LightGuide::Cells::prefetch(const vec3& position, const vec3& normal) const {
-    etendue::prefetch(&slots_[mix_bits(key_of(position, normal)) & (slots_.size() - 1)]);
+const LightFactors* LightGuide::in_large(const vec3& position, const vec3& normal) const {
+    const uint32_t large = large_.find(position, normal);
+    return large == Cells::NONE ? nullptr : &of_large_[large];
+}
+
+uint64_t LightGuide::Cells::begin_find(const vec3& position, const vec3& normal) const {
+    const uint64_t key = key_of(position, normal);
+    prefetch(&slots_[mix_bits(key) & (slots_.size() - 1)]);
+    return key;
 }
 
 uint64_t LightGuide::Cells::key_of(const vec3& position, const vec3& normal) const {

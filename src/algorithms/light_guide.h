@@ -52,8 +52,9 @@ class LightGuide {
         Cells(const vec3& origin, float side) : origin_(origin), per_length_(1 / side) {}
 
         uint32_t find(const vec3& position, const vec3& normal) const;
-        /// Asks for what `find` looks at.
-        void prefetch(const vec3& position, const vec3& normal) const;
+        // `find` in two steps, between which what it looks at comes from memory.
+        uint64_t begin_find(const vec3& position, const vec3& normal) const;
+        uint32_t find(uint64_t key) const { return slots_[slot_of(key)].cell; }
         uint32_t find_or_add(const vec3& position, const vec3& normal);
         uint32_t count() const { return count_; }
 
@@ -71,6 +72,8 @@ class LightGuide {
         uint32_t count_ = 0;
         std::vector<Slot> slots_;  // a hash table with linear probing, half empty; its size is a power of 2
     };
+
+    const LightFactors* in_large(const vec3& position, const vec3& normal) const;
 
     // Few paths come to a small cell; what they leave open the large one around it tells.
     Cells small_, large_;

@@ -44,20 +44,38 @@ Distribution2D::Distribution2D(std::span<const float> weights, uint32_t width, u
     rows_ = Distribution1D(row_sums);
 }
 
-Distribution2D::Choice Distribution2D::sample(const vec2& u) const {
-    const Distribution1D::Choice row = rows_.sample(u.y);
-    const float* const begin = &cumulative_[size_t{row.index} * width_];
-    const float target = u.x * begin[width_ - 1];
+Distribution2D::Search Distribution2D::begin(const vec2& u) const {
+    Search search{rows_.sample(u.y), u.x};
     const auto step = std::min(static_cast<uint32_t>(u.x * static_cast<float>(width_)), width_ - 1);
-    const float* end = begin + first_cell_[size_t{row.index} * width_ + step];
+    search.first_cell = size_t{search.row.index} * width_ + step;
+    prefetch(&first_cell_[search.first_cell]);
+    prefetch(&cumulative_[size_t{search.row.index} * width_ + width_ - 1]);
+    return search;
+}
+
+void Distribution2D::find_start(Search& search) const {
+    search.start = &cumulative_[size_t{search.row.index} * width_] + first_cell_[search.first_cell];
+    prefetch(search.start);
+}
+
+Distribution2D::Choice Distribution2D::finish(const Search& search) const {
+    const float* const begin = &cumulative_[size_t{search.row.index} * width_];
+    const float target = search.u * begin[width_ - 1];
+    const float* end = search.start;
     while (end < begin + width_ && *end <= target) ++end;
     while (end == begin + width_ || *end == (end == begin ? 0.f : *(end - 1))) --end;
     const float from = end == begin ? 0.f : *(end - 1), width = *end - from;
     const float remapped = std::clamp((target - from) / width, 0.f, ONE_MINUS_EPSILON);
     return {static_cast<uint32_t>(end - begin),
-            row.index,
-            row.pmf * width / begin[width_ - 1],
-            {remapped, row.remapped}};
+            search.row.index,
+            search.row.pmf * width / begin[width_ - 1],
+            {remapped, search.row.remapped}};
+}
+
+Distribution2D::Choice Distribution2D::sample(const vec2& u) const {
+    Search search = begin(u);
+    find_start(search);
+    return finish(search);
 }
 
 float Distribution2D::pmf(uint32_t x, uint32_t y) const {

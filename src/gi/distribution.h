@@ -50,7 +50,24 @@ class Distribution2D {
     Distribution2D(std::span<const float> weights, uint32_t width, uint32_t height);
 
     Choice sample(const vec2& u) const;
+    /// The same in three steps, `begin`, `find_start` and `finish`, between which what the next one reads comes from memory:
+    /// several choices can so wait at once.
+    struct Search {
+        Distribution1D::Choice row{};
+        float u = 0;
+        size_t first_cell = 0;         // the place of the search's beginning in its table
+        const float* start = nullptr;  // and that beginning
+    };
+    Search begin(const vec2& u) const;
+    void find_start(Search& search) const;
+    Choice finish(const Search& search) const;
+
     float pmf(uint32_t x, uint32_t y) const;
+    /// Asks for what `pmf` reads.
+    void prefetch_pmf(uint32_t x, uint32_t y) const {
+        prefetch(&cumulative_[size_t{y} * width_ + x]);
+        prefetch(&cumulative_[size_t{y} * width_ + width_ - 1]);
+    }
     double total() const { return rows_.total(); }
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }

@@ -154,8 +154,12 @@ ETENDUE_LANES_FLATTEN LightSampleOf<Lanes> SkyLight::sample_Li(const LaneMask& o
     if (sky.cells_.total() <= 0) return out;
     out.exists = on;
     PerLane<float> low{}, high{}, along_x{}, along_y{}, pdf{};
+    const Distribution2D& cells = sky.cells(with_mis);
+    PerLane<Distribution2D::Search> searches;
+    for_lanes(on, [&](int i) { searches[i] = cells.begin({u.x[i], u.y[i]}); });
+    for_lanes(on, [&](int i) { cells.find_start(searches[i]); });
     for_lanes(on, [&](int i) {
-        const Distribution2D::Choice cell = sky.cells(with_mis).sample({u.x[i], u.y[i]});
+        const Distribution2D::Choice cell = cells.finish(searches[i]);
         sky.prefetch_around(cell.x, cell.y);
         low[i] = sky.row_cosines_[cell.y], high[i] = sky.row_cosines_[cell.y + 1];
         along_y[i] = cell.remapped.y;
@@ -180,6 +184,7 @@ ETENDUE_LANES_FLATTEN FoundLightOf<Lanes> SkyLight::found(const LaneMask& on, co
     for_lanes(on, [&](int i) {
         const auto [x, y] = sky.cell_at({u[i], v[i]});
         sky.prefetch_around(x, y);
+        if (sky.cells_.total() > 0) sky.cells(with_mis).prefetch_pmf(x, y);
     });
     PerLane<float> pdf{};
     if (sky.cells_.total() > 0) {
