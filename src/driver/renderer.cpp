@@ -121,15 +121,15 @@ bool Renderer::render_until(double error_bound, double time_limit) {
         const std::vector<TileGoal> goals = next_goals(errors, error_bound);
         complete = goals.empty();
         if (complete) break;
-        // Pixel by pixel, so that all threads have work where few tiles are left, and the clock is read often.
-        constexpr uint32_t SIDE = Tiles::SIDE, PIXELS = SIDE * SIDE;
-        workers.in_order(goals.size() * PIXELS, [&](uint32_t index) {
-            const TileGoal& goal = goals[index / PIXELS];
+        // Line by line, so that all threads have work where few tiles are left, and the clock is read often.
+        constexpr uint32_t SIDE = Tiles::SIDE;
+        workers.in_order(goals.size() * SIDE, [&](uint32_t index) {
+            const TileGoal& goal = goals[index / SIDE];
             const Tile tile = tiles_[goal.tile];
-            const uint32_t x = tile.x0 + index % SIDE, y = tile.y0 + index % PIXELS / SIDE;
-            if (x < tile.x1 && y < tile.y1) {
+            const uint32_t y = tile.y0 + index % SIDE;
+            if (y < tile.y1) {
                 const std::shared_lock lock(tile_mutexes_[goal.tile]);
-                render_part({x, y, x + 1, y + 1}, 1, goal.samples);
+                render_part({tile.x0, y, tile.x1, y + 1}, 1, goal.samples);
             }
             if (seconds_since(start) > time_limit) stop_ = true;
         });

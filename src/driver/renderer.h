@@ -132,7 +132,7 @@ class Renderer {
     std::shared_ptr<Films> films_;
     Film film_;
     Tiles tiles_;
-    // Held by who renders a tile, or reads it; shared by those who render single pixels of it.
+    // Held by who renders a tile, or reads it; shared by those who render single lines of it.
     mutable std::vector<std::shared_mutex> tile_mutexes_;
     std::vector<ContributionSums> contributions_;
     std::atomic<bool> stop_ = false;

@@ -119,7 +119,7 @@ MUTANTS = (
         "gi/sampling.h",
         "u.y - half",
         "u.y * (u.y - half)",
-        (ANALYTIC, "-k", "parallel_plates"),
+        (LIGHTS, "-k", "triangle or quad"),
     ),
     Mutant(
         "MIS weight of the wrong pair",
