@@ -50,21 +50,12 @@ class Context {
     Context(const Scene& scene, Sampler sampler, Observer* observer = nullptr)
         : scene(scene), sampler(sampler), observer_(observer) {}
 
-    /// What the path's next edge ends at. `meanwhile`: what else is to be done, once the ray is traced and what is known
-    /// of the surface that it hit comes from memory.
-    template <class Work>
-    SurfaceHit intersect(const Ray& ray, const Work& meanwhile) {
+    /// What the path's next edge ends at. The next random numbers are made while what is known of it comes from memory.
+    SurfaceHit intersect(const Ray& ray) {
         ++rays;
-        const SurfaceHit hit = scene.intersect(ray, [&] {
-            sampler.prepare();
-            meanwhile();
-        });
-        if (!hit.valid) meanwhile();
+        const SurfaceHit hit = scene.intersect(ray, [&] { sampler.prepare(); });
         if (observer_) observer_->edge(ray, hit);
         return hit;
-    }
-    SurfaceHit intersect(const Ray& ray) {
-        return intersect(ray, [] {});
     }
     bool visible(const Ray& ray) {
         ++rays;

@@ -25,7 +25,6 @@ ScenePart::ScenePart(const Mesh& part_mesh, const Material& part_material)
            number(part_material.coated),
            number(bsdf_is_delta(part_material.bsdf)),
            number(part_material.albedo_texture),
-           number(part_material.cutout_texture),
            number(part_material.normal_texture),
            {}},
       mesh(&part_mesh),
@@ -60,7 +59,7 @@ ETENDUE_LANES_FLATTEN SurfaceHits::SurfaceHits(const LaneRays& rays, const LaneM
     point.normal = select(front, point.normal, -point.normal);
     surface_.front = front;
 
-    const LaneMask smooth = triangle.smooth > 0, mapped = materials[11] > 0;
+    const LaneMask smooth = triangle.smooth > 0, mapped = materials[10] > 0;
     frame = FrameOf<Lanes>(any(smooth || mapped) ? shading_normals(smooth, mapped) : point.normal);
     wo_local = frame.to_local(wo);
 }

@@ -15,8 +15,8 @@ struct alignas(64) ScenePart {
         vec3 albedo;
         float ior, roughness, absorb;
         float bsdf;                                           // a BsdfKind
-        float coated, delta, textured, cut_out, has_normals;  // 1 or 0
-        float unused[4];
+        float coated, delta, has_colours, has_normals;  // 1 or 0; the latter two of textures
+        float unused[5];
     } line;
     static_assert(sizeof(Line) == LINE_FLOATS * sizeof(float));
     const Mesh* mesh;
