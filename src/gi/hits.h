@@ -14,7 +14,7 @@ struct alignas(64) ScenePart {
     struct Line {
         vec3 albedo;
         float ior, roughness, absorb;
-        float bsdf;                                           // a BsdfKind
+        float bsdf;                                     // a BsdfKind
         float coated, delta, has_colours, has_normals;  // 1 or 0; the latter two of textures
         float unused[5];
     } line;
