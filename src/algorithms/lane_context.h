@@ -8,8 +8,6 @@ namespace etendue {
 
 class LaneContext {
   public:
-    using Number = Lanes;
-
     explicit LaneContext(const Scene& scene) : scene(scene) {}
 
     /// A lane goes on with another sample.
