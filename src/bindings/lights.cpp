@@ -124,15 +124,34 @@ LightSampler::Kind light_choice_named(const std::string& name) {
     return static_cast<LightSampler::Kind>(index_of(LightSampler::names, name, "light_choice"));
 }
 
+/// Light samples as arrays.
+struct DrawnLights {
+    Out<int32_t, nb::shape<-1>> index;
+    OutVectors3 wi, radiance, position;
+    OutScalars pdf;
+
+    explicit DrawnLights(size_t n)
+        : index(new_array<Out<int32_t, nb::shape<-1>>>({n})),
+          wi(new_array<OutVectors3>({n, 3})),
+          radiance(new_array<OutVectors3>({n, 3})),
+          position(new_array<OutVectors3>({n, 3})),
+          pdf(new_array<OutScalars>({n})) {}
+
+    nb::dict as_dict() const {
+        nb::dict out;
+        out["index"] = index, out["wi"] = wi, out["radiance"] = radiance, out["pdf"] = pdf;
+        out["position"] = position;
+        return out;
+    }
+};
+
 nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vectors2& u,
                       const std::string& light_choice, bool with_mis, const LightFactors* learned) {
     require_same_length(reference.shape(0), u.shape(0), "reference and u");
     const size_t n = reference.shape(0);
     const LightSampler::Kind kind = light_choice_named(light_choice);
-    auto index = new_array<Out<int32_t, nb::shape<-1>>>({n});
-    auto wi = new_array<OutVectors3>({n, 3}), radiance = new_array<OutVectors3>({n, 3}),
-         position = new_array<OutVectors3>({n, 3});
-    auto pdf = new_array<OutScalars>({n});
+    DrawnLights drawn(n);
+    auto& [index, wi, radiance, position, pdf] = drawn;
     for (size_t i = 0; i < n; ++i) {
         index.data()[i] = -1;
         const vec2 numbers = vec2_at(u, i);
@@ -147,10 +166,7 @@ nb::dict sample_light(const Scene& scene, const Vectors3& reference, const Vecto
         set_vec3(position, i, sample.point.position);
         pdf.data()[i] = choice->pmf * sample.pdf;
     }
-    nb::dict out;
-    out["index"] = index, out["wi"] = wi, out["radiance"] = radiance, out["pdf"] = pdf,
-    out["position"] = position;
-    return out;
+    return drawn.as_dict();
 }
 
 nb::dict sample_light_in_lanes(const Scene& scene, const Vectors3& reference, const Vectors2& u,
@@ -158,10 +174,8 @@ nb::dict sample_light_in_lanes(const Scene& scene, const Vectors3& reference, co
     require_same_length(reference.shape(0), u.shape(0), "reference and u");
     const size_t n = reference.shape(0);
     const LightSampler::Kind kind = light_choice_named(light_choice);
-    auto index = new_array<Out<int32_t, nb::shape<-1>>>({n});
-    auto wi = new_array<OutVectors3>({n, 3}), radiance = new_array<OutVectors3>({n, 3}),
-         position = new_array<OutVectors3>({n, 3});
-    auto pdf = new_array<OutScalars>({n});
+    DrawnLights drawn(n);
+    auto& [index, wi, radiance, position, pdf] = drawn;
     PerLane<const LightFactors*> all_learned;
     all_learned.fill(learned);
     in_lanes(n, [&](size_t first, const LaneMask& on) {
@@ -193,10 +207,7 @@ nb::dict sample_light_in_lanes(const Scene& scene, const Vectors3& reference, co
         set_lanes(position, first, samples.exists, samples.point.position);
         set_lanes(pdf, first, samples.exists, lanes_of(pmf) * samples.pdf);
     });
-    nb::dict out;
-    out["index"] = index, out["wi"] = wi, out["radiance"] = radiance, out["pdf"] = pdf,
-    out["position"] = position;
-    return out;
+    return drawn.as_dict();
 }
 
 auto light_pdf(const Scene& scene, const Vectors3& reference, const Vectors3& wi,
