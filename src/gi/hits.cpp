@@ -32,16 +32,18 @@ ScenePart::ScenePart(const Mesh& part_mesh, const Material& part_material)
 
 ETENDUE_LANES_FLATTEN SurfaceHits::SurfaceHits(const LaneRays& rays, const LaneMask& on,
                                                const FoundHits& hits)
-    : valid(on && mask_of(hits.valid)), wo(-rays.direction), found(hits) {
+    : wo(-rays.direction), found(hits) {
     PerLane<const Facet*> facets;
     PerLane<const float*> lines;
-    PerLane<bool> light;
+    PerLane<bool> hit, light;
     for (int i = 0; i < LANES; ++i) {
         const ScenePart* const part = found.part[i];
         facets[i] = part ? &part->mesh->facets[found.triangle[i]] : &NO_FACET;
         lines[i] = &(part ? part : &NO_PART)->line.albedo.x;
+        hit[i] = part != nullptr;
         light[i] = found.light[i] != nullptr;
     }
+    valid = on && mask_of(hit);
     is_light = on && mask_of(light);
 
     const LineColumns materials = columns_of(lines);
@@ -102,13 +104,13 @@ void SurfaceHits::read_colours() {
 
 SurfaceHit SurfaceHits::seen_by_light(int lane) const {
     SurfaceHit hit;
-    hit.valid = found.valid[lane];
+    hit.valid = found.part[lane] != nullptr;
     hit.front = front[lane];
     hit.wo = wo.lane(lane);
     hit.distance = found.distance[lane];
     hit.point.normal = point.normal.lane(lane);
     hit.light = found.light[lane];
-    hit.mesh = found.part[lane] ? found.part[lane]->mesh : nullptr;
+    hit.mesh = hit.valid ? found.part[lane]->mesh : nullptr;
     hit.triangle = found.triangle[lane];
     hit.barycentrics = found.barycentrics(lane);
     return hit;

@@ -26,12 +26,11 @@ struct alignas(64) ScenePart {
 
 /// What of the hits of rays the library tells, and whose they are.
 struct FoundHits {
-    PerLane<bool> valid{};
     PerLane<float> distance{};
     PerLane<float> b1{}, b2{};  // barycentrics of the hit in the triangle
     PerLane<uint32_t> triangle{};
-    PerLane<const ScenePart*> part{};
-    // The part's, or the sky where a ray left the scene; null where nothing shines.
+    PerLane<const ScenePart*> part{};  // null where a ray left the scene
+    // The part's, or there the sky; null where nothing shines.
     PerLane<const Light*> light{};
 
     vec2 barycentrics(int lane) const { return {b1[lane], b2[lane]}; }

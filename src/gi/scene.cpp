@@ -228,8 +228,7 @@ FoundHits Scene::first(const LaneRays& rays, const LaneMask& on) const {
     const RayArrays arrays(rays);
     for_lanes(on, [&](int i) {
         const Found found = first(arrays[i]);
-        hits.valid[i] = found.mesh != NONE;
-        if (!hits.valid[i]) {
+        if (found.mesh == NONE) {
             hits.light[i] = sky_;
             return;
         }
