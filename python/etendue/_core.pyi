@@ -544,6 +544,12 @@ class Renderer:
     def threads(self) -> int: ...
 
     @property
+    def sharing(self) -> int:
+        """
+        How many pixels share what their paths find, see the function `sharing`.
+        """
+
+    @property
     def error(self) -> float:
         """
         Error of the film as the running or last render last saw it (see film_error); infinite where it cannot
@@ -589,11 +595,18 @@ class Renderer:
         in each pixel, also while another thread renders.
         """
 
-def film_error(sum: NDArray[numpy.float64], sum_squares: NDArray[numpy.float64], half_sum: NDArray[numpy.float64], sample_count: NDArray[numpy.uint64], invalid_per_pixel: NDArray[numpy.uint64], half_count: NDArray[numpy.uint64]) -> tuple[float, float, float, NDArray[numpy.float64]]:
+def film_error(sum: NDArray[numpy.float64], sum_squares: NDArray[numpy.float64], half_sum: NDArray[numpy.float64], sample_count: NDArray[numpy.uint64], invalid_per_pixel: NDArray[numpy.uint64], half_count: NDArray[numpy.uint64], sharing: int = 1) -> tuple[float, float, float, NDArray[numpy.float64]]:
     """
     The error of a film, the lower and the upper end of its 95% confidence interval, and the errors of its tiles of
     16 x 16 pixels, (rows, columns). A tile's is relative: the root mean square of its pixels' and channels' standard
     errors, estimated from the halves, over its mean radiance; the film's is what 95% of the tiles do not exceed.
+    sharing: how many pixels shared their paths, see `sharing`.
+    """
+
+def sharing(algorithm: str, parameters: Mapping[str, bool | int | float | str]) -> int:
+    """
+    How many pixels, all in one tile of 16 x 16, an estimator lets share what their paths find: their estimates are not
+    independent of each other. 1: none. Raises ValueError for names and values that do not fit.
     """
 
 class Contribution:
@@ -614,6 +627,10 @@ class Contribution:
     @property
     def weight(self) -> float:
         """Of the technique, by multiple importance sampling."""
+
+    @property
+    def borrowed(self) -> bool:
+        """It was found by another pixel's path, and shared."""
 
     @property
     def pdf(self) -> float:
@@ -715,6 +732,10 @@ class PathRecord:
 
     @property
     def vertices(self) -> list[PathVertex]: ...
+
+    @property
+    def borrowed(self) -> list[Contribution]:
+        """Contributions that other pixels' paths found and shared with this one."""
 
     @property
     def radiance(self) -> list[float]:

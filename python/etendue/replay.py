@@ -50,6 +50,12 @@ class Replay:
         for number, vertex in enumerate(self.vertices, start=1):
             yield ""
             yield from _vertex_lines(number, vertex)
+        if self.path.borrowed:
+            total = sum(
+                (np.multiply(found.unweighted, found.weight) for found in self.path.borrowed), np.zeros(3)
+            )
+            yield ""
+            yield f"found by the paths of other pixels, and shared: {_triple(total)}"
 
     def save(self, path: str | Path, scene: Scene) -> None:
         """Draw the path over a picture of `scene`, from its camera, as an SVG file.

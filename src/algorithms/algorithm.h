@@ -96,6 +96,7 @@ struct CameraSample {
     Ray ray;
     Sampler::Stream numbers;
     Observer* observer = nullptr;
+    bool shares = false;  // its path with that of the sample before it, see Algorithm::sharing
 };
 
 /// Samples to be estimated, in any order.
@@ -125,6 +126,9 @@ class Algorithm {
     /// cut short. Learned from random numbers that an estimate uses, anything would bias that estimate; learned from
     /// anything but the scene, the camera and the parameters, a render would not come out the same again.
     virtual bool prepare(const Preparation&) { return true; }
+    /// How many samples, of neighbouring pixels, are best estimated together, as what is found for one is used for the
+    /// others: a power of two; 1: none.
+    virtual uint32_t sharing() const { return 1; }
     /// Unbiased estimates of the radiance along the camera rays of a queue, until there are no more. Returns how many rays
     /// it traced. Called by many threads at once.
     virtual uint64_t estimate(const Scene& scene, SampleQueue& queue) const = 0;

@@ -100,6 +100,8 @@ struct ConnectionOf {
     Mask<F> exists{false};
     RayOf<F> shadow_ray;
     ContributionOf<F> found;
+    Vec3<F> f;           // the vertex's BSDF towards the light
+    Vec3<F> irradiance;  // |cos| radiance / pdf: of the vertex, before its BSDF
 };
 
 /// From a vertex to a place on a light, which was chosen with probability `pmf`; `bsdf`: in that direction. The throughput
@@ -114,7 +116,8 @@ ConnectionOf<F> connection(const SurfacePointOf<F>& point, const Vec3<F>& shadin
     found.other_pdf = bsdf.pdf;
     found.weight = light_sampling_weight(mis, found.pdf, found.other_pdf);
     found.unweighted = throughput * reflected / found.pdf;
-    return {light.exists && !is_black(reflected), shadow_ray(point, light), found};
+    return {light.exists && !is_black(reflected), shadow_ray(point, light), found, bsdf.f,
+            light.radiance * (abs(dot(light.wi, shading_normal)) / found.pdf)};
 }
 
 /// One number chooses the light and the place along it, so that samples which are stratified over [0, 1) are so over each

@@ -2,14 +2,6 @@
 
 namespace etendue {
 
-namespace {
-
-Ray ray_of(const LaneRays& rays, int lane) {
-    return {rays.origin.lane(lane), rays.direction.lane(lane), rays.t_max[lane]};
-}
-
-}  // namespace
-
 void LaneContext::tell_edges(const LaneRays& lane_rays, const LaneMask& on, const SurfaceHits& hits) {
     tell_each(on, [&](Observer& observer, int i) {
         const FoundHits& found = hits.found;

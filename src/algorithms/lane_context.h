@@ -17,6 +17,10 @@ class LaneContext {
         is_observed_ = is_observed_ || sample.observer;
     }
 
+    bool is_observed() const { return is_observed_; }
+    /// Who listens to a lane's path from now on.
+    void observe(int lane, Observer* observer) { observers_[lane] = observer; }
+
     /// What the next edges of the paths that are `on` end at. `meanwhile`: what else is to be done, once the rays are
     /// traced and what is known of the surfaces that they hit comes from memory.
     template <class Work>

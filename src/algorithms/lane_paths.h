@@ -8,6 +8,7 @@ namespace etendue {
 /// What paths carry as they grow; an estimator adds what it needs besides.
 struct LanePaths {
     LaneMask alive{false};
+    PerLane<size_t> sample{};  // whose path it is, counted as in the queue
     LaneRays rays;
     Lanes edges = 1;  // the path's length with the ray that is to be traced next
     LaneVec3 radiance, throughput;
@@ -25,13 +26,12 @@ struct LanePaths {
     }
 };
 
-/// Follows the paths of all samples of a queue. `extend(context, paths)` grows those that are alive by an edge, and says
-/// which of them still are. Returns how many rays were traced.
-template <class Paths, class Extend>
-uint64_t follow(const Scene& scene, SampleQueue& queue, const Extend& extend) {
-    LaneContext context(scene);
+/// Follows the paths of all samples of a queue. `extend(paths)` grows those that are alive by an edge, and says which of them
+/// still are; `begin(sample)` and `end(index, radiance)` are told of each.
+template <class Paths>
+void follow(LaneContext& context, SampleQueue& queue, const auto& begin, const auto& extend,
+            const auto& end) {
     Paths paths;
-    PerLane<size_t> sample{};  // whose path it is
     size_t begun = 0;
     bool is_empty = false;
     for (;;) {
@@ -43,17 +43,28 @@ uint64_t follow(const Scene& scene, SampleQueue& queue, const Extend& extend) {
                 is_empty = !next;
                 if (is_empty) return;
                 starts[i] = true;
-                sample[i] = begun++;
+                paths.sample[i] = begun++;
+                begin(*next);
                 origins.set(i, next->ray.origin), directions.set(i, next->ray.direction);
                 context.start(i, *next);
             });
             paths.start(mask_of(starts), origins.lanes(), directions.lanes());
         }
         const LaneMask before = paths.alive;
-        if (!any(before)) return context.rays;
-        extend(context, paths);
-        for_lanes(before && !paths.alive, [&](int i) { queue.estimated(sample[i], paths.radiance.lane(i)); });
+        if (!any(before)) return;
+        extend(paths);
+        for_lanes(before && !paths.alive, [&](int i) { end(paths.sample[i], paths.radiance.lane(i)); });
     }
+}
+
+/// The same where a path's radiance is its sample's estimate. Returns how many rays were traced.
+template <class Paths>
+uint64_t follow(const Scene& scene, SampleQueue& queue, const auto& extend) {
+    LaneContext context(scene);
+    follow<Paths>(
+        context, queue, [](const CameraSample&) {}, [&](Paths& paths) { extend(context, paths); },
+        [&](size_t sample, const vec3& radiance) { queue.estimated(sample, radiance); });
+    return context.rays;
 }
 
 }  // namespace etendue

@@ -22,6 +22,7 @@ struct ContributionOf {
     F weight = 1;           // of the technique among those that could have found the same path (MIS)
     F pdf = 0;        // of the last direction by this technique, in solid angle; 0: no density, as of a delta
     F other_pdf = 0;  // of the same direction by the other technique
+    bool borrowed = false;  // found by another pixel's path, see path_reuse.h
 };
 using Contribution = ContributionOf<float>;
 
@@ -31,6 +32,8 @@ class Observer {
     /// The path's next edge, and what is at its end.
     virtual void edge(const Ray& /*ray*/, const SurfaceHit& /*hit*/) {}
     virtual void shadow_ray(const Ray& /*ray*/, bool /*visible*/) {}
+    /// A look from the path's first surface at the second of another pixel's path, see path_reuse.h.
+    virtual void reuse_ray(const Ray& /*ray*/, bool /*visible*/) {}
     /// How the path goes on, if it does.
     virtual void bounce(const BsdfSample& /*sample*/) {}
     /// Russian roulette was played, with `q` the probability to end the path here.

@@ -6,6 +6,7 @@
 // straight from the camera or after a delta bounce, counts in full.
 #include "algorithms/direct_light.h"
 #include "algorithms/lane_paths.h"
+#include "algorithms/path_reuse.h"
 #include "algorithms/russian_roulette.h"
 
 namespace etendue {
@@ -18,6 +19,7 @@ class Pathtracer : public Algorithm {
         : MAX_CAM_PATH_LENGTH(static_cast<float>(parameters.get<int>("max_cam_path_length"))),
           light_choice_(parameters),
           mis_(mis_of(parameters)),
+          reuses_paths_(parameters.get<bool>("path_reuse")),
           roulette_(parameters) {}
 
     bool learns(const Scene& scene) const override { return light_choice_.learns(scene); }
@@ -25,9 +27,21 @@ class Pathtracer : public Algorithm {
         return light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_);
     }
 
+    uint32_t sharing() const override { return reuses_paths_ ? PathReuse::PIXELS : 1; }
+
     uint64_t estimate(const Scene& scene, SampleQueue& queue) const override {
-        return follow<Paths>(scene, queue,
-                             [&](LaneContext& context, Paths& paths) { extend(context, paths); });
+        if (!reuses_paths_) {
+            return follow<Paths>(
+                scene, queue, [&](LaneContext& context, Paths& paths) { extend(context, paths, nullptr); });
+        }
+        LaneContext context(scene);
+        PathReuse reuse;
+        follow<Paths>(
+            context, queue, [&](const CameraSample& sample) { reuse.begin(sample); },
+            [&](Paths& paths) { extend(context, paths, &reuse); },
+            [&](size_t sample, const vec3& radiance) { reuse.end(sample, radiance); });
+        reuse.share(context, queue);
+        return context.rays;
     }
 
     static std::vector<Parameter> parameters() {
@@ -35,6 +49,7 @@ class Pathtracer : public Algorithm {
         all.push_back(max_path_length_parameter());
         all.push_back(LightChoice::parameter());
         all.push_back(mis_parameter());
+        all.push_back(PathReuse::parameter());
         return all;
     }
 
@@ -47,10 +62,13 @@ class Pathtracer : public Algorithm {
         LaneMask prev_delta{true};
         // To a light from there, whose shadow ray is traced only when the next surface is being fetched from memory.
         ConnectionOf<Lanes> connection;
+        // Of paths that are shared, from where on throughput and radiance begin anew: the largest component of what the
+        // throughput was by then, and 1 / (1 - q) of a roulette before.
+        Lanes scale = 1, survival = 1;
     };
 
-    /// By an edge.
-    void extend(LaneContext& context, Paths& paths) const {
+    /// By an edge. `reuse`: null where paths are not shared.
+    void extend(LaneContext& context, Paths& paths, PathReuse* reuse) const {
         const LaneMask on = paths.alive, is_first = paths.edges == 1;
         context.sampler.start_vertex(paths.edges);
         SurfaceHits hits = context.intersect(paths.rays, on, [&] {
@@ -81,11 +99,16 @@ class Pathtracer : public Algorithm {
 
         // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
         const BsdfSampleOf<Lanes> bounce = context.bounce(hits, goes_on);
+        const LaneMask is_shared =
+            reuse ? share(context, paths, hits, goes_on, bounce, *reuse) : LaneMask(false);
         goes_on = goes_on && bounce.exists;
-        paths.throughput *= bounce.weight;
+        paths.throughput = select(is_shared, LaneVec3(1), paths.throughput * bounce.weight);
         paths.eta_scale *= bounce.eta2;
-        goes_on = goes_on && !is_black(paths.throughput);
-        goes_on = roulette_.survives(context, paths.throughput, paths.eta_scale, paths.edges, goes_on);
+        goes_on = goes_on && !is_black(select(is_shared, bounce.weight, paths.throughput));
+        const Lanes before = max_component(paths.throughput);
+        goes_on = roulette_.survives(context, paths.throughput, paths.eta_scale * paths.scale, paths.edges,
+                                     goes_on);
+        paths.survival = select(is_first, max_component(paths.throughput) / before, paths.survival);
 
         paths.prev_position = hits.point.position;
         paths.prev_learned = learned;
@@ -96,6 +119,33 @@ class Pathtracer : public Algorithm {
         paths.edges += 1;
         // Of those that end here nothing will be traced meanwhile.
         paths.radiance += light_over(context, paths.connection, on && !goes_on);
+    }
+
+    /// At the second surfaces of paths, where their light is known for other directions too: hands over what they have found,
+    /// and begins anew with what they will find. Says which paths are shared from there on.
+    LaneMask share(LaneContext& context, Paths& paths, const SurfaceHits& hits, const LaneMask& goes_on,
+                   const BsdfSampleOf<Lanes>& bounce, PathReuse& reuse) const {
+        const LaneMask is_first = paths.edges == 1;
+        paths.scale = select(is_first, Lanes(1), paths.scale);
+        reuse.add_first(goes_on && is_first && !hits.is_delta, paths.sample, hits);
+        LaneMask shared = goes_on && paths.edges == 2 && !paths.prev_delta;
+        if (!any(shared)) return shared;
+        const Lanes share = hits.diffuse_shares(shared);
+        shared = shared && share > 0;
+        if (!any(shared)) return shared;
+        reuse.observe_beyond(context, shared, paths.sample);
+        // The light that was sampled here is asked for now, as it belongs to what is handed over.
+        ConnectionOf<Lanes> connection = paths.connection;
+        connection.found.unweighted = connection.irradiance;
+        const LaneVec3 irradiance = light_over(context, connection, shared);
+        paths.connection.exists = paths.connection.exists && !shared;
+        reuse.add_second(shared, paths.sample,
+                         {hits, share, paths.radiance, paths.throughput, paths.survival, irradiance,
+                          connection.f, bounce});
+        paths.radiance = select(shared, LaneVec3(0), paths.radiance);
+        paths.scale =
+            select(shared, max_component(paths.throughput) * max_component(bounce.weight), paths.scale);
+        return shared;
     }
 
     /// Probabilities with which the lights that were found, and what of them, would have been chosen on purpose; 0 for the
@@ -114,6 +164,7 @@ class Pathtracer : public Algorithm {
     const float MAX_CAM_PATH_LENGTH;
     LightChoice light_choice_;
     const Mis mis_;
+    const bool reuses_paths_;
     const RussianRoulette roulette_;
 };
 

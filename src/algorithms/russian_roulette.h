@@ -18,12 +18,13 @@ class RussianRoulette {
         : RR_MIN_PATH_LENGTH(static_cast<float>(parameters.get<int>("rr_min_path_length"))),
           RR_THRESHOLD(static_cast<float>(parameters.get<double>("rr_threshold"))) {}
 
-    /// Plays after bounce number `bounces` with the paths that are `on`. False: a path ends here. `eta_scale` undoes the
-    /// compression of radiance in glass, which comes back when the path leaves it (pbrt 4th ed., 13.2.1).
+    /// Plays after bounce number `bounces` with the paths that are `on`. False: a path ends here. `scale` makes what a path
+    /// carries of its throughput: it undoes the compression of radiance in glass, which comes back when the path leaves it
+    /// (pbrt 4th ed., 13.2.1).
     template <class Context, class F>
-    Mask<F> survives(Context& context, Vec3<F>& throughput, const F& eta_scale, const F& bounces,
+    Mask<F> survives(Context& context, Vec3<F>& throughput, const F& scale, const F& bounces,
                      const Mask<F>& on) const {
-        const F carried = max_component(throughput) * eta_scale;
+        const F carried = max_component(throughput) * scale;
         const Mask<F> plays = on && bounces > RR_MIN_PATH_LENGTH && carried < RR_THRESHOLD;
         if (!any(plays)) return on;
         const F q = 1 - carried / RR_THRESHOLD;

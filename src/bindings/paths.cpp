@@ -37,6 +37,7 @@ void bind_replay(nb::module_& m) {
             "unweighted", [](const Contribution& c) { return from_vec3(c.unweighted); },
             "(3,): radiance, as the technique alone would have it.")
         .def_ro("weight", &Contribution::weight, "Of the technique, by multiple importance sampling.")
+        .def_ro("borrowed", &Contribution::borrowed, "It was found by another pixel's path, and shared.")
         .def_ro("pdf", &Contribution::pdf,
                 "Of the last direction by this technique, in solid angle; 0 where it has no density.")
         .def_ro("other_pdf", &Contribution::other_pdf, "Of the same direction by the other technique.");
@@ -112,6 +113,8 @@ void bind_replay(nb::module_& m) {
 
     nb::class_<PathRecord>(m, "PathRecord", "A sample's path, vertex by vertex.")
         .def_ro("vertices", &PathRecord::vertices)
+        .def_ro("borrowed", &PathRecord::borrowed,
+                "Contributions that other pixels' paths found and shared with this one.")
         .def_prop_ro(
             "radiance", [](const PathRecord& p) { return from_vec3(p.radiance); }, "(3,): the estimate.");
 
@@ -128,10 +131,10 @@ std::unique_ptr<TechniqueFilm> make_technique_film(Renderer& renderer, int max_e
 }
 
 bool render_techniques(TechniqueFilm& film, uint64_t samples, const nb::object& progress) {
-    const double pixels = static_cast<double>(film.width()) * film.height();
+    const double all = static_cast<double>(film.width()) * film.height() * static_cast<double>(samples);
     return watched([&] { return film.render(samples); }, [&] { film.cancel(); },
                    [&] {
-                       if (!progress.is_none()) progress(film.pixels_done() / pixels);
+                       if (!progress.is_none()) progress(static_cast<double>(film.samples_done()) / all);
                    });
 }
 

@@ -107,11 +107,11 @@ void resume(Renderer& renderer, const Sums& sum, const Sums& sum_squares, const 
 }
 
 nb::tuple film_error_of(const Sums& sum, const Sums& sum_squares, const Sums& half_sum,
-                        const Counts& sample_count, const Counts& invalid_per_pixel,
-                        const Counts& half_count) {
+                        const Counts& sample_count, const Counts& invalid_per_pixel, const Counts& half_count,
+                        uint32_t sharing) {
     const Film film = film_of(sum, sum_squares, half_sum, sample_count, invalid_per_pixel, half_count);
     TileWorkers workers(thread_count(0));
-    const std::vector<TileError> tiles = tile_errors(film, workers);
+    const std::vector<TileError> tiles = tile_errors(film, workers, sharing);
     const FilmError whole = film_error(tiles);
     const size_t columns = (film.width() + Tiles::SIDE - 1) / Tiles::SIDE;
     auto errors = new_array<Out<double, nb::shape<-1, -1>>>({tiles.size() / columns, columns});
@@ -232,6 +232,9 @@ void bind_renderer(nb::module_& m) {
                      "Rays traced, shadow rays included, without those of `prepare`.")
         .def_prop_ro("seconds", &Renderer::seconds, "Time spent in `render`.")
         .def_prop_ro("threads", &Renderer::threads)
+        .def_prop_ro(
+            "sharing", [](Renderer& r) { return r.algorithm().sharing(); },
+            "How many pixels share what their paths find, see the function `sharing`.")
         .def_prop_ro("error", &Renderer::error,
                      "Error of the film as the running or last render last saw it (see film_error); infinite "
                      "where it cannot\n"
@@ -248,17 +251,28 @@ void bind_renderer(nb::module_& m) {
             "The first thousand of them: (x, y, sample).");
     m.def(
         "film_error", &film_error_of, nb::arg("sum"), nb::arg("sum_squares"), nb::arg("half_sum"),
-        nb::arg("sample_count"), nb::arg("invalid_per_pixel"), nb::arg("half_count"),
+        nb::arg("sample_count"), nb::arg("invalid_per_pixel"), nb::arg("half_count"), nb::arg("sharing") = 1,
         nb::sig("def film_error(sum: NDArray[numpy.float64], sum_squares: NDArray[numpy.float64], half_sum: "
                 "NDArray[numpy.float64], sample_count: NDArray[numpy.uint64], invalid_per_pixel: "
-                "NDArray[numpy.uint64], half_count: NDArray[numpy.uint64]) -> tuple[float, float, float, "
+                "NDArray[numpy.uint64], half_count: NDArray[numpy.uint64], sharing: int = 1) -> tuple[float, "
+                "float, "
+                "float, "
                 "NDArray[numpy.float64]]"),
         "The error of a film, the lower and the upper end of its 95% confidence interval, and the errors of "
         "its tiles of\n"
         "16 x 16 pixels, (rows, columns). A tile's is relative: the root mean square of its pixels' and "
         "channels' standard\n"
         "errors, estimated from the halves, over its mean radiance; the film's is what 95% of the tiles do "
-        "not exceed.");
+        "not exceed.\nsharing: how many pixels shared their paths, see `sharing`.");
+    m.def(
+        "sharing",
+        [](const std::string& algorithm, const std::map<std::string, ParameterValue>& parameters) {
+            return make_algorithm(algorithm, parameters)->sharing();
+        },
+        nb::arg("algorithm"), nb::arg("parameters"),
+        "How many pixels, all in one tile of 16 x 16, an estimator lets share what their paths find: their "
+        "estimates are not\nindependent of each other. 1: none. Raises ValueError for names and values that "
+        "do not fit.");
 }
 
 }  // namespace etendue

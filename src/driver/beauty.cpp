@@ -13,11 +13,12 @@ uint64_t stage_beyond(uint64_t samples) {
     return samples < middle ? middle : 2 * octave;
 }
 
-/// Tiles in which an interruption has left pixels with fewer samples than others.
+/// Tiles that an interruption has left within a stage.
 std::vector<TileGoal> begun(std::span<const TileError> tiles) {
     std::vector<TileGoal> goals;
     for (uint32_t i = 0; i < tiles.size(); ++i) {
-        if (tiles[i].fewest < tiles[i].most) goals.push_back({i, stage_beyond(tiles[i].most - 1)});
+        const uint64_t stage = stage_beyond(tiles[i].most - 1);
+        if (tiles[i].fewest < stage) goals.push_back({i, stage});
     }
     return goals;
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "driver/pixel_groups.h"
+
 namespace etendue {
 
 namespace {
@@ -52,15 +54,20 @@ TileSums sums_of(const Film& film, const Tile& tile) {
     return sums;
 }
 
-/// With S the sum of n pixels' squared errors s: error^2 = S / 3n / mean^2. The s are independent, and the variance
-/// of each is at most the expectation of s^2, so that of S is at most their sum, and an error's is that of its
-/// square over (2 error)^2.
-TileError error_of(const TileSums& sums, double darkest) {
+/// With S the sum of n pixels' squared errors s: error^2 = S / 3n / mean^2. Where the s are independent, the variance of each
+/// is at most the expectation of s^2, so that of S is at most their sum, and an error's is that of its square over
+/// (2 error)^2.
+///
+/// Pixels that share paths have correlated errors. They do for one block of samples out of b, which makes their
+/// correlation 1 / b at most, and 1 / b^2 that of the squares; each pixel has b (sharing - 1) such partners.
+TileError error_of(const TileSums& sums, double darkest, uint32_t sharing) {
     const double radiance = std::max(sums.radiance / (3 * sums.pixels), darkest);
     TileError tile{0, 0, sums.fewest, sums.most};
     if (sums.squared_error > 0) {
         tile.error = std::sqrt(sums.squared_error / (3 * sums.pixels)) / radiance;
-        tile.spread = tile.error * std::sqrt(sums.fourth_power) / (2 * sums.squared_error);
+        const double blocks = std::max(static_cast<double>(sums.fewest) / PixelGroups::BLOCK, 1.0);
+        const double correlated = 1 + (sharing - 1) / blocks;
+        tile.spread = tile.error * std::sqrt(correlated * sums.fourth_power) / (2 * sums.squared_error);
     }
     if (!std::isfinite(tile.error)) tile.spread = 0;
     return tile;
@@ -68,7 +75,7 @@ TileError error_of(const TileSums& sums, double darkest) {
 
 }  // namespace
 
-std::vector<TileError> tile_errors(const Film& film, TileWorkers& workers) {
+std::vector<TileError> tile_errors(const Film& film, TileWorkers& workers, uint32_t sharing) {
     const Tiles tiles(film.width(), film.height());
     std::vector<TileSums> sums(tiles.count());
     workers.for_each(tiles, [&](uint32_t index, const Tile& tile) { sums[index] = sums_of(film, tile); });
@@ -79,7 +86,7 @@ std::vector<TileError> tile_errors(const Film& film, TileWorkers& workers) {
     const double steady = darkest > 0 ? std::exp2(std::floor(std::log2(darkest))) : 1;
     std::vector<TileError> errors;
     errors.reserve(sums.size());
-    for (const TileSums& tile : sums) errors.push_back(error_of(tile, steady));
+    for (const TileSums& tile : sums) errors.push_back(error_of(tile, steady, sharing));
     return errors;
 }
 

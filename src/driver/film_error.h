@@ -17,8 +17,9 @@ struct TileError {
     uint64_t fewest, most;  // samples of its pixels
 };
 
-/// One for each tile of `film`, whose samples no thread may add to meanwhile.
-std::vector<TileError> tile_errors(const Film& film, TileWorkers& workers);
+/// One for each tile of `film`, whose samples no thread may add to meanwhile. `sharing`: how many pixels shared their paths,
+/// see Algorithm.
+std::vector<TileError> tile_errors(const Film& film, TileWorkers& workers, uint32_t sharing);
 
 /// How many of so many tiles must keep a bound for the film to keep it: 95%.
 constexpr size_t tiles_within(size_t tiles) { return (95 * tiles + 99) / 100; }

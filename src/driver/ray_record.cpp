@@ -13,6 +13,7 @@ class Recorder : public Observer {
   public:
     void edge(const Ray& ray, const SurfaceHit&) override { rays.push_back({ray, false}); }
     void shadow_ray(const Ray& ray, bool) override { rays.push_back({ray, true}); }
+    void reuse_ray(const Ray& ray, bool) override { rays.push_back({ray, true}); }
 
     std::vector<TracedRay> rays;
 };
@@ -25,22 +26,13 @@ RayRecord::RayRecord(const Scene& scene, const Sensor& sensor, const Algorithm& 
     const Tiles tiles(width_, height_);
     tiles_.resize(tiles.count());
     TileWorkers(thread_count(threads)).for_each(tiles, [&](uint32_t index, const Tile& tile) {
-        SampleBatch<Recorder> batch(sensor);
-        const auto flush = [&] {
-            batch.estimate(algorithm, scene, [&](const auto& sample) {
-                const auto& rays = sample.listener.rays;
-                tiles_[index].insert(tiles_[index].end(), rays.begin(), rays.end());
-            });
+        SampleBatch<Recorder> batch(scene, sensor, algorithm);
+        const auto visit = [&](const auto& sample) {
+            const auto& rays = sample.listener.rays;
+            tiles_[index].insert(tiles_[index].end(), rays.begin(), rays.end());
         };
-        for (uint32_t y = tile.y0; y < tile.y1; ++y) {
-            for (uint32_t x = tile.x0; x < tile.x1; ++x) {
-                for (uint64_t sample = 0; sample < samples; ++sample) {
-                    batch.add(x, y, sample);
-                    if (batch.is_full()) flush();
-                }
-            }
-        }
-        flush();
+        batch.add(tile, 0, samples, EVERY_SAMPLE, visit);
+        batch.finish(visit);
     });
 }
 

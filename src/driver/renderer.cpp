@@ -121,17 +121,14 @@ bool Renderer::render_until(double error_bound, double time_limit) {
         const std::vector<TileGoal> goals = next_goals(errors, error_bound);
         complete = goals.empty();
         if (complete) break;
-        // Line by line, so that all threads have work where few tiles are left, and the clock is read often.
-        constexpr uint32_t SIDE = Tiles::SIDE;
-        workers.in_order(goals.size() * SIDE, [&](uint32_t index) {
-            const TileGoal& goal = goals[index / SIDE];
-            const Tile tile = tiles_[goal.tile];
-            const uint32_t y = tile.y0 + index % SIDE;
-            if (y < tile.y1) {
-                const std::shared_lock lock(tile_mutexes_[goal.tile]);
-                render_part({tile.x0, y, tile.x1, y + 1}, 1, goal.samples);
+        workers.in_order(goals.size(), [&](uint32_t index) {
+            const TileGoal& goal = goals[index];
+            // In pieces, so that the tile can be read and the clock is looked at meanwhile.
+            for (uint64_t samples = errors[goal.tile].fewest; samples < goal.samples && !stop_;) {
+                samples = std::min(samples + PixelGroups::BLOCK, goal.samples);
+                render_tile(goal.tile, 1, samples);
+                if (seconds_since(start) > time_limit) stop_ = true;
             }
-            if (seconds_since(start) > time_limit) stop_ = true;
         });
         seconds_ = seconds_before + seconds_since(start);
     }
@@ -166,49 +163,50 @@ const Algorithm& Renderer::algorithm() {
 }
 
 std::vector<TileError> Renderer::look(TileWorkers& workers) {
-    std::vector<TileError> errors = tile_errors(film_, workers);
+    std::vector<TileError> errors = tile_errors(film_, workers, algorithm_->sharing());
     error_ = film_error(errors).error;
     return errors;
 }
 
 void Renderer::render_tile(uint32_t index, uint32_t stride, uint64_t samples) {
     const std::lock_guard lock(tile_mutexes_[index]);
-    render_part(tiles_[index], stride, samples);
-}
-
-void Renderer::render_part(const Tile& part, uint32_t stride, uint64_t samples) {
     if (contributions_.empty()) {
-        render_part<Unobserved>(part, stride, samples);
+        render_tile<Unobserved>(tiles_[index], stride, samples);
     } else {
-        render_part<ContributionObserver>(part, stride, samples);
+        render_tile<ContributionObserver>(tiles_[index], stride, samples);
     }
 }
 
 template <class Listener>
-void Renderer::render_part(const Tile& part, uint32_t stride, uint64_t samples) {
-    SampleBatch<Listener> batch(sensor_, &stop_);
-    uint64_t taken = 0, rays = 0;
-    const auto flush = [&] {
-        rays += batch.estimate(*algorithm_, scene_, [&](const auto& sample) {
-            ++taken;
-            if (!film_.at(sample.x, sample.y).add(sample.radiance, sample.index)) {
-                report_invalid({sample.x, sample.y, sample.index});
-            } else if constexpr (std::is_same_v<Listener, ContributionObserver>) {
-                sample.listener.add_to(contributions_[size_t{sample.y} * film_.width() + sample.x]);
-            }
-        });
+void Renderer::render_tile(const Tile& tile, uint32_t stride, uint64_t samples) {
+    SampleBatch<Listener> batch(scene_, sensor_, *algorithm_, &stop_);
+    uint64_t taken = 0;
+    const auto visit = [&](const auto& sample) {
+        ++taken;
+        if (!film_.at(sample.x, sample.y).add(sample.radiance, sample.index)) {
+            report_invalid({sample.x, sample.y, sample.index});
+        } else if constexpr (std::is_same_v<Listener, ContributionObserver>) {
+            sample.listener.add_to(contributions_[size_t{sample.y} * film_.width() + sample.x]);
+        }
     };
-    // A tile begins at a multiple of every stride that divides its side.
-    for (uint32_t y = part.y0; y < part.y1; y += stride) {
-        for (uint32_t x = part.x0; x < part.x1; x += stride) {
-            for (uint64_t i = film_.at(x, y).count; i < samples && !stop_; ++i) {
-                batch.add(x, y, first_sample_ + i);
-                if (batch.is_full()) flush();
-            }
+    std::array<uint64_t, Tiles::SIDE * Tiles::SIDE> counts{};
+    const auto count = [&](uint32_t x, uint32_t y) -> uint64_t& {
+        return counts[(y - tile.y0) * Tiles::SIDE + x - tile.x0];
+    };
+    uint64_t fewest = samples;
+    for (uint32_t y = tile.y0; y < tile.y1; ++y) {
+        for (uint32_t x = tile.x0; x < tile.x1; ++x) {
+            count(x, y) = film_.at(x, y).count;
+            fewest = std::min(fewest, count(x, y));
         }
     }
-    flush();
-    rays_ += rays;
+    // A tile begins at a multiple of every stride that divides its side.
+    const auto is_missing = [&](const PixelGroups::Place& place, uint64_t index) {
+        return first_sample_ + count(place.x, place.y) <= index && (place.x | place.y) % stride == 0;
+    };
+    batch.add(tile, first_sample_ + fewest, first_sample_ + samples, is_missing, visit);
+    batch.finish(visit);
+    rays_ += batch.rays();
     samples_done_ += taken;
 }
 

@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <shared_mutex>
 
 #include "algorithms/algorithm.h"
 #include "driver/contributions.h"
@@ -116,10 +115,8 @@ class Renderer {
     /// The tiles' errors, and the film's for others to see.
     std::vector<TileError> look(TileWorkers& workers);
     void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
-    /// Whoever calls it holds the tile's mutex.
-    void render_part(const Tile& part, uint32_t stride, uint64_t samples);
     template <class Listener>
-    void render_part(const Tile& part, uint32_t stride, uint64_t samples);
+    void render_tile(const Tile& tile, uint32_t stride, uint64_t samples);
     void report_invalid(const InvalidSample& sample);
 
     const Scene& scene_;
@@ -132,8 +129,7 @@ class Renderer {
     std::shared_ptr<Films> films_;
     Film film_;
     Tiles tiles_;
-    // Held by who renders a tile, or reads it; shared by those who render single lines of it.
-    mutable std::vector<std::shared_mutex> tile_mutexes_;
+    mutable std::vector<std::mutex> tile_mutexes_;  // held by who renders a tile, or reads it
     std::vector<ContributionSums> contributions_;
     std::atomic<bool> stop_ = false;
     std::atomic<uint64_t> rays_ = 0, samples_done_ = 0, invalid_count_ = 0;

@@ -9,10 +9,8 @@ namespace {
 
 class Recorder : public Observer {
   public:
-    explicit Recorder(std::vector<PathVertex>& vertices) : vertices_(&vertices) {}
-
     void edge(const Ray& ray, const SurfaceHit& hit) override {
-        vertices_->push_back({ray, hit, throughput_, {}, {}, {}, {}});
+        path.vertices.push_back({ray, hit, throughput_, {}, {}, {}, {}});
     }
     void shadow_ray(const Ray& ray, bool visible) override { here().shadow_rays.push_back({ray, visible}); }
     void bounce(const BsdfSample& sample) override {
@@ -24,12 +22,22 @@ class Recorder : public Observer {
         here().roulette = {q, survived};
         if (survived) throughput_ /= 1 - q;
     }
-    void contribution(const Contribution& found) override { here().contributions.push_back(found); }
+    void contribution(const Contribution& found) override {
+        if (found.borrowed) {
+            path.borrowed.push_back(found);
+            return;
+        }
+        // It is told late where it had to be shared first. Light is sampled from one vertex before it.
+        const auto end = static_cast<size_t>(found.edges);
+        const size_t vertex = found.technique == Technique::light_sampling ? end - 1 : end;
+        path.vertices[vertex - 1].contributions.push_back(found);
+    }
+
+    PathRecord path;
 
   private:
-    PathVertex& here() { return vertices_->back(); }
+    PathVertex& here() { return path.vertices.back(); }
 
-    std::vector<PathVertex>* vertices_;
     vec3 throughput_{1};
 };
 
@@ -39,9 +47,13 @@ PathRecord replay(const Scene& scene, const Sensor& sensor, const Algorithm& alg
                   uint32_t y, uint64_t index) {
     const FlushDenormals flush;  // as while rendering
     PathRecord record;
-    SampleBatch<Recorder> batch(sensor);
-    batch.add(x, y, index, Recorder(record.vertices));
-    batch.estimate(algorithm, scene, [&](const auto& sample) { record.radiance = sample.radiance; });
+    SampleBatch<Recorder> batch(scene, sensor, algorithm);
+    const Tiles tiles(sensor.camera.width(), sensor.camera.height());
+    batch.add(tiles[tiles.index_of(x, y)], x, y, index);
+    batch.finish([&](const auto& sample) {
+        record = sample.listener.path;
+        record.radiance = sample.radiance;
+    });
     return record;
 }
 

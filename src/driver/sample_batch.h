@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "algorithms/algorithm.h"
+#include "driver/pixel_groups.h"
 #include "driver/sensor.h"
 
 namespace etendue {
@@ -13,9 +14,12 @@ namespace etendue {
 template <class Listener>
 class SampleBatch : public SampleQueue {
   public:
+    using Place = PixelGroups::Place;
     struct Sample {
         uint32_t x, y;
         uint64_t index;
+        bool shares;     // paths with the sample before
+        bool is_wanted;  // else it is there for those that share its path
         vec3 radiance;
         Listener listener;
     };
@@ -24,37 +28,68 @@ class SampleBatch : public SampleQueue {
     static constexpr size_t CAPACITY = 4096;
 
     /// Once `stop` is true, where there is one, no more samples are given out.
-    explicit SampleBatch(const Sensor& sensor, const std::atomic<bool>* stop = nullptr)
-        : sensor_(sensor), numbers_(sensor.make_sampler()), stop_(stop) {}
+    SampleBatch(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm,
+                const std::atomic<bool>* stop = nullptr)
+        : scene_(scene),
+          sensor_(sensor),
+          algorithm_(algorithm),
+          numbers_(sensor.make_sampler()),
+          stop_(stop) {}
 
-    bool is_full() const { return samples_.size() >= CAPACITY; }
-    void add(uint32_t x, uint32_t y, uint64_t index, Listener listener = {}) {
-        samples_.push_back({x, y, index, vec3(0), std::move(listener)});
+    /// Estimates samples [begin, end) of the pixels of a tile, those for which wanted(place, index), and calls visit(sample)
+    /// for each, a pixel's in order, at the latest in `finish`. Where it was stopped the last ones are left out.
+    void add(const Tile& tile, uint64_t begin, uint64_t end, const auto& wanted, const auto& visit) {
+        while (begin < end && !is_stopped()) {
+            const uint64_t block = begin / PixelGroups::BLOCK;
+            const uint64_t stop = std::min(end, (block + 1) * PixelGroups::BLOCK);
+            PixelGroups(tile, algorithm_.sharing(), block).for_each([&](const auto& places) {
+                for (uint64_t index = begin; index < stop; ++index) {
+                    add_group(places, index, [&](const Place& place) { return wanted(place, index); });
+                    if (samples_.size() >= CAPACITY) finish(visit);
+                }
+            });
+            begin = stop;
+        }
     }
-
-    /// Estimates what has been added, and calls visit(sample) for each, in the order in which they were. Where it was
-    /// stopped the last ones are left out. Returns how many rays were traced.
-    template <class Visit>
-    uint64_t estimate(const Algorithm& algorithm, const Scene& scene, const Visit& visit) {
-        const uint64_t rays = algorithm.estimate(scene, *this);
-        for (size_t i = 0; i < given_; ++i) visit(samples_[i]);
+    /// One sample of one pixel of a tile, which `finish` visits.
+    void add(const Tile& tile, uint32_t x, uint32_t y, uint64_t index) {
+        const PixelGroups groups(tile, algorithm_.sharing(), index / PixelGroups::BLOCK);
+        add_group(groups.of(x, y), index, [&](const Place& place) { return place.x == x && place.y == y; });
+    }
+    void finish(const auto& visit) {
+        rays_ += algorithm_.estimate(scene_, *this);
+        for (size_t i = 0; i < given_; ++i) {
+            if (samples_[i].is_wanted) visit(samples_[i]);
+        }
         samples_.clear();
         given_ = 0;
-        return rays;
     }
 
+    /// That were traced.
+    uint64_t rays() const { return rays_; }
+
     std::optional<CameraSample> next() override {
-        if (given_ == samples_.size() || (stop_ && *stop_)) return std::nullopt;
+        // Groups are estimated whole or not at all.
+        if (given_ == samples_.size() || (is_stopped() && !samples_[given_].shares)) return std::nullopt;
         if (given_ % LANES == 0) make_rays();
         const size_t i = given_ % LANES;
+        Sample& sample = samples_[given_++];
         Observer* observer = nullptr;
-        if constexpr (std::derived_from<Listener, Observer>) observer = &samples_[given_].listener;
-        ++given_;
-        return CameraSample{rays_[i], streams_[i], observer};
+        if constexpr (std::derived_from<Listener, Observer>) observer = &sample.listener;
+        return CameraSample{rays_of_[i], streams_[i], observer, sample.shares};
     }
     void estimated(size_t sample, const vec3& radiance) override { samples_[sample].radiance = radiance; }
 
   private:
+    bool is_stopped() const { return stop_ && *stop_; }
+    void add_group(std::span<const Place> places, uint64_t index, const auto& wanted) {
+        if (std::ranges::none_of(places, wanted)) return;
+        bool shares = false;
+        for (const Place& place : places) {
+            samples_.push_back({place.x, place.y, index, shares, wanted(place), vec3(0), {}});
+            shares = true;
+        }
+    }
     /// Of the next samples, as many as there are lanes.
     void make_rays() {
         LaneSampler numbers;
@@ -69,17 +104,23 @@ class SampleBatch : public SampleQueue {
         const LaneVec2 u = numbers.next_2d(LaneMask(true));
         const LaneRays rays =
             sensor_.ray(LaneVec2{lanes_of(x), lanes_of(y)}, u, numbers.next_2d(LaneMask(true)));
-        for (int i = 0; i < LANES; ++i) rays_[i] = {rays.origin.lane(i), rays.direction.lane(i)};
+        for (int i = 0; i < LANES; ++i) rays_of_[i] = {rays.origin.lane(i), rays.direction.lane(i)};
     }
 
+    const Scene& scene_;
     const Sensor& sensor_;
+    const Algorithm& algorithm_;
     Sampler numbers_;
     const std::atomic<bool>* stop_;
     std::vector<Sample> samples_;
     size_t given_ = 0;
-    PerLane<Ray> rays_{};
+    uint64_t rays_ = 0;
+    PerLane<Ray> rays_of_{};
     PerLane<Sampler::Stream> streams_{};
 };
+
+/// For `add`.
+inline constexpr auto EVERY_SAMPLE = [](const PixelGroups::Place&, uint64_t) { return true; };
 
 /// Where nobody listens.
 struct Unobserved {};

@@ -62,27 +62,18 @@ TechniqueFilm::TechniqueFilm(const Scene& scene, const Sensor& sensor, const Alg
 }
 
 bool TechniqueFilm::render(uint64_t samples) {
-    pixels_done_ = 0;
+    samples_done_ = 0;
     TileWorkers workers(threads_);
     workers.for_each(Tiles(width(), height()), [&](uint32_t, const Tile& tile) {
-        SampleBatch<TechniqueObserver> batch(sensor_);
+        SampleBatch<TechniqueObserver> batch(scene_, sensor_, algorithm_, &stop_);
         TechniqueSums sums(max_edges_);
-        const auto flush = [&] {
-            batch.estimate(algorithm_, scene_, [&](const auto& sample) {
-                for (const Contribution& found : sample.listener.all) sums.add(found);
-                sums.move_to(&sums_[slot(pixel(sample.x, sample.y), weighted, Technique::bsdf_sampling, 1)]);
-            });
+        const auto visit = [&](const auto& sample) {
+            ++samples_done_;
+            for (const Contribution& found : sample.listener.all) sums.add(found);
+            sums.move_to(&sums_[slot(pixel(sample.x, sample.y), weighted, Technique::bsdf_sampling, 1)]);
         };
-        for (uint32_t y = tile.y0; y < tile.y1; ++y) {
-            for (uint32_t x = tile.x0; x < tile.x1 && !stop_; ++x) {
-                for (uint64_t index = samples_; index < samples_ + samples; ++index) {
-                    batch.add(x, y, index);
-                    if (batch.is_full()) flush();
-                }
-                ++pixels_done_;
-            }
-        }
-        flush();
+        batch.add(tile, samples_, samples_ + samples, EVERY_SAMPLE, visit);
+        batch.finish(visit);
     });
     if (stop_.exchange(false)) return false;
     samples_ += samples;

@@ -32,8 +32,8 @@ class TechniqueFilm {
         return sums_[slot(pixel(x, y), weighting, technique, edges)];
     }
     uint64_t samples() const { return samples_; }
-    /// Pixels done by the running or last `render`.
-    uint32_t pixels_done() const { return pixels_done_; }
+    /// Of all pixels, by the running or last `render`.
+    uint64_t samples_done() const { return samples_done_; }
     uint32_t width() const { return sensor_.camera.width(); }
     uint32_t height() const { return sensor_.camera.height(); }
     int max_edges() const { return max_edges_; }
@@ -52,7 +52,7 @@ class TechniqueFilm {
     int max_edges_, threads_;
     std::vector<Sums> sums_;
     uint64_t samples_ = 0;
-    std::atomic<uint32_t> pixels_done_ = 0;
+    std::atomic<uint64_t> samples_done_ = 0;
     std::atomic<bool> stop_ = false;
 };
 

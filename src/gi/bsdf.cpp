@@ -72,6 +72,11 @@ BsdfSample bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, fl
         kind, [&](auto bsdf) { return decltype(bsdf)::sample(surface, wo, lobe, u); });
 }
 
+float bsdf_diffuse_share(BsdfKind kind, const Surface& surface, float cos_o) {
+    return Bsdfs::dispatch<float>(kind,
+                                  [&](auto bsdf) { return decltype(bsdf)::diffuse_share(surface, cos_o); });
+}
+
 bool bsdf_is_delta(BsdfKind kind) {
     return Bsdfs::dispatch<bool>(kind, [](auto bsdf) { return decltype(bsdf)::is_delta; });
 }
@@ -99,6 +104,15 @@ ETENDUE_LANES_FLATTEN BsdfSampleOf<Lanes> bsdf_samples(const LaneMask& on, const
         out.pdf = select(mask, sample.pdf, out.pdf);
         out.type = select(mask, sample.type, out.type);
         out.eta2 = select(mask, sample.eta2, out.eta2);
+    });
+    return out;
+}
+
+Lanes bsdf_diffuse_shares(const LaneMask& on, const Lanes& kinds, const SurfaceOf<Lanes>& surfaces,
+                          const Lanes& cos_o) {
+    Lanes out = 0;
+    Bsdfs::for_kinds(on, kinds, [&](auto bsdf, const LaneMask& mask) {
+        out = select(mask, decltype(bsdf)::diffuse_share(surfaces, cos_o), out);
     });
     return out;
 }

@@ -7,6 +7,10 @@ namespace etendue {
 
 using LaneRays = RayOf<Lanes>;
 
+inline Ray ray_of(const LaneRays& rays, int lane) {
+    return {rays.origin.lane(lane), rays.direction.lane(lane), rays.t_max[lane]};
+}
+
 /// A mesh with what belongs to it, and what a hit wants to know of its material, in a line of the cache.
 struct alignas(64) ScenePart {
     ScenePart(const Mesh& mesh, const Material& material);
@@ -54,6 +58,13 @@ struct SurfaceHits {
     // The BSDF in world directions, as of SurfaceHit.
     BsdfValueOf<Lanes> values(const LaneMask& on, const LaneVec3& wi) const;
     BsdfSampleOf<Lanes> sample(const LaneMask& on, const Lanes& lobe, const LaneVec2& u) const;
+
+    /// The BSDF's diffuse part for the direction that the rays came from, see Bsdf, and its kind.
+    Lanes diffuse_shares(const LaneMask& on) const {
+        return bsdf_diffuse_shares(on, bsdf_, surface_, wo_local.z);
+    }
+    const SurfaceOf<Lanes>& surfaces() const { return surface_; }
+    const Lanes& bsdfs() const { return bsdf_; }
 
     /// The rays that leave these points in unit directions.
     LaneRays rays_towards(const LaneVec3& wi) const { return {point.offset_towards(wi), wi}; }

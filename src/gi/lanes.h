@@ -132,6 +132,10 @@ ETENDUE_LANES_INLINE LaneVec3 select(const LaneMask& mask, const LaneVec3& yes, 
     return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 
+ETENDUE_LANES_INLINE LaneVec3 max(const LaneVec3& a, const LaneVec3& b) {
+    return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
+}
+
 /// Vectors that come one by one, for lanes; 0 for those that do not. Kept by coordinates, as a vector register would wait
 /// for what was written otherwise.
 class VectorArrays {

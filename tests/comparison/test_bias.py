@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from etendue.comparison import bias
+from etendue.comparison import bias, metrics
 from etendue.comparison.estimators import Estimator
 from etendue.comparison.reference import Reference
 from etendue.comparison.tally import Point, Repeat, Tally
@@ -163,5 +163,5 @@ def test_the_references_noise_counts(truth: Draw) -> None:
 
 
 def test_tiles_at_the_edges_are_smaller() -> None:
-    sums = bias.sums(np.ones((10, 13)), 8)
+    sums = metrics.sums(np.ones((10, 13)), 8)
     assert sums.tolist() == [[64, 40], [16, 10]]

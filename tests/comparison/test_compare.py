@@ -123,6 +123,7 @@ class TestResults:
             "algorithm": ["Pathtracer", "NaivePathtracer"],
             "light_choice": ["learned", None],
             "mis": ["none", None],
+            "path_reuse": [True, None],
         }
 
     def test_images_are_those_of_ordinary_renders(self, lit: Path) -> None:

@@ -30,9 +30,13 @@ def test_a_replay_is_the_sample_of_the_render(estimator: Estimator, sampler: str
 def test_a_replay_tells_where_the_radiance_is_from(estimator: Estimator) -> None:
     world, camera = cornell()
     film = estimator.render(world, camera, 1, seed=5)
+    shared = 0
     for x, y in PIXELS:
         path = _core.replay(film, x, y, 0)
         found = [c for vertex in path.vertices for c in vertex.contributions]
+        assert not any(c.borrowed for c in found) and all(c.borrowed for c in path.borrowed)
+        shared += len(path.borrowed)
+        found += path.borrowed
         total = sum((np.multiply(c.unweighted, c.weight) for c in found), np.zeros(3))
         np.testing.assert_allclose(total, path.radiance, rtol=1e-5)
         throughput = np.ones(3)
@@ -47,6 +51,7 @@ def test_a_replay_tells_where_the_radiance_is_from(estimator: Estimator) -> None
                 throughput = throughput / (1 - vertex.roulette_q)
         for here, there in zip(path.vertices, path.vertices[1:], strict=False):
             np.testing.assert_allclose(there.origin, here.position, atol=1e-4)
+    assert (shared > 0) == (film.sharing > 1)
 
 
 def test_weights_of_a_replay_are_of_its_pdfs() -> None:

@@ -89,7 +89,11 @@ def estimators(roulette: tuple[float, ...] = (0, 1)) -> Iterator[Estimator]:
     for info in _core.algorithms():
         if info.longest_path == 0:
             continue
-        axes = [[(p.name, choice) for choice in p.choices] for p in info.parameters if p.kind == "choice"]
+        axes: list[list[tuple[str, object]]] = [
+            [(p.name, choice) for choice in (p.choices if p.kind == "choice" else (False, True))]
+            for p in info.parameters
+            if p.kind in ("choice", "bool")
+        ]
         if any(p.name == "rr_threshold" for p in info.parameters):
             axes.append([("rr_threshold", float(threshold)) for threshold in roulette])
         for settings in itertools.product(*axes):

@@ -2,7 +2,8 @@
 
 The mean of a tile is tested by Welch's t-test against the reference. Its variance comes from how the repeats
 scatter in each of its pixels: pixels have random numbers of their own, so the variances of a tile's pixels add
-up, and eight repeats give hundreds of degrees of freedom instead of seven.
+up, and eight repeats give hundreds of degrees of freedom instead of seven. Where pixels share paths, within squares
+of 16 x 16, it is the variances of these cells that add up.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import statistics
-from .metrics import EPSILON, LUMINANCE
+from .metrics import EPSILON, LUMINANCE, sums
 from .reference import Reference
 from .statistics import Estimate
 from .tally import Tally
@@ -79,14 +80,16 @@ def judge(tally: Tally, reference: Reference) -> Bias:
     if tile is None:
         nothing, unknown = np.zeros((0, 0)), Estimate(np.nan, np.nan, np.nan)
         return Bias(0, nothing, nothing, nothing.astype(bool), unknown, 1.0, 1.0, 1.0, 1.0)
-    ours, theirs = tally.luminance_variance, reference.luminance_variance
+    cells = -(-tile // tally.cell)
+    tile = cells * tally.cell
+    ours, theirs = tally.cell_variance, reference.luminance_variance
     pixels = sums(np.ones_like(brightness), tile)
     difference = tally.luminance - brightness
     excused = _may_be_unseen(difference, tile), _may_be_unseen(difference, max(difference.shape))
     difference = sums(difference, tile) / pixels
     brightness = sums(brightness, tile) / pixels
-    variances = sums(ours, tile) / pixels**2, sums(theirs, tile) / pixels**2
-    freedom = _freedom(ours, tile, tally.repeats)
+    variances = sums(ours, cells) / pixels**2, sums(theirs, tile) / pixels**2
+    freedom = _freedom(ours, cells, tally.repeats)
     p = statistics.welch(difference, variances, (freedom, 1e6))
     relative = np.divide(difference, brightness, out=np.zeros_like(difference), where=brightness > 0)
     evidence = np.where(excused[0], 1.0, p)
@@ -114,12 +117,6 @@ def _may_be_unseen(difference: NDArray[np.float64], tile: int) -> NDArray[np.boo
     """
     missing = -sums(difference, tile)
     return np.asarray((missing > 0) & (missing <= _UNSEEN * max(float(difference.max()), 0.0)))
-
-
-def sums(values: NDArray[np.float64], tile: int) -> NDArray[np.float64]:
-    """float64 (rows, columns): sums of `values` (height, width) over square tiles; those at the edges are smaller."""
-    rows = np.add.reduceat(values, np.arange(0, values.shape[0], tile), axis=0)
-    return np.asarray(np.add.reduceat(rows, np.arange(0, values.shape[1], tile), axis=1))
 
 
 def _tile(tally: Tally, brightness: NDArray[np.float64]) -> int | None:

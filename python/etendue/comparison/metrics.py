@@ -64,3 +64,9 @@ def quick(image: Image, reference: Image) -> dict[str, float]:
         "relMSE": float(relative.mean()),
         "trimmed relMSE": trimmed_mean(relative),
     }
+
+
+def sums(values: NDArray[np.float64], tile: int) -> NDArray[np.float64]:
+    """float64 (rows, columns): sums of `values` (height, width) over square tiles; those at the edges are smaller."""
+    rows = np.add.reduceat(values, np.arange(0, values.shape[0], tile), axis=0)
+    return np.asarray(np.add.reduceat(rows, np.arange(0, values.shape[1], tile), axis=1))

@@ -24,9 +24,11 @@ from . import metrics
 from .estimators import Estimator
 from .goal import Goal
 
-# Samples that are independent let the reference's own error be known exactly; power-weighted MIS is the
+# Samples and pixels that are independent let the reference's own error be known exactly; power-weighted MIS is the
 # estimator without a blind spot. Its seed is far from those of the repeats.
-ESTIMATOR = Estimator("reference", {"algorithm": "Pathtracer", "mis": "power", "sampler": "independent"})
+ESTIMATOR = Estimator(
+    "reference", {"algorithm": "Pathtracer", "mis": "power", "sampler": "independent", "path_reuse": False}
+)
 _SEED_DISTANCE = 2**31
 _CHECKPOINT_SECONDS = 60.0
 
@@ -35,6 +37,7 @@ _CHECKPOINT_SECONDS = 60.0
 class Reference:
     """image: float32 (height, width, 3). variance: float64, of each value of `image`; None where unknown.
 
+    sharing: how many pixels shared their paths, see `Film`.
     halves: two images of half of the samples each. name: where it comes from, for people. identity: the same for
     the same pixels alone.
     """
@@ -47,6 +50,7 @@ class Reference:
     spp: float | None = None
     seconds: float | None = None
     film: Path | None = None
+    sharing: int = 1
 
     @property
     def own_errors(self) -> dict[str, float]:
@@ -59,10 +63,12 @@ class Reference:
 
     @property
     def luminance_variance(self) -> NDArray[np.float64]:
-        """float64 (height, width): the most that the luminance's can be, the channels' errors going together."""
+        """float64 (height, width): the most that pixels add to the variance of a sum of luminances, the errors of
+        channels and of pixels that shared paths going together.
+        """
         if self.variance is None:
             return np.zeros(self.image.shape[:2])
-        return np.square(np.sqrt(self.variance) @ metrics.LUMINANCE)
+        return self.sharing * np.square(np.sqrt(self.variance) @ metrics.LUMINANCE)
 
 
 def given(path: Path, width: int, height: int) -> Reference:
@@ -131,6 +137,7 @@ def of_film(film: Film, name: str, path: Path | None = None) -> Reference:
         film.spp,
         film.seconds,
         path,
+        film.sharing,
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..film import Film
+from ..film.error import TILE
 from . import metrics
 from .estimators import Estimator
 from .metrics import LUMINANCE
@@ -55,7 +56,8 @@ class Tally:
     """The repeats of one estimator.
 
     curves: for each repeat, its errors from the first sample on. first: the first repeat, which is shown.
-    techniques: the rows of its pyramid.
+    techniques: the rows of its pyramid. cell: width and height of the squares of pixels that are independent of each
+    other, 1 where pixels are.
     """
 
     estimator: Estimator
@@ -65,11 +67,13 @@ class Tally:
     invalid_count: int = 0
     first: Repeat | None = None
     techniques: list[Row] = field(default_factory=list)
+    cell: int = 1
     sum: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 3)))
     sum_squares: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 3)))
     valid: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
     _luminance: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
-    _luminance_squares: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
+    _cells: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
+    _cell_squares: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
 
     def add(self, repeat: Repeat, seed: int) -> None:
         """One more repeat."""
@@ -79,13 +83,17 @@ class Tally:
         if self.first is None:
             self.first = repeat
             self.sum, self.sum_squares, self.valid = film.sum.copy(), film.sum_squares.copy(), valid
-            self._luminance, self._luminance_squares = luminance, luminance**2
+            self.cell = 1 if film.sharing == 1 else TILE
+            cells = metrics.sums(luminance, self.cell)
+            self._luminance, self._cells, self._cell_squares = luminance, cells, cells**2
         else:
             self.sum += film.sum
             self.sum_squares += film.sum_squares
             self.valid += valid
+            cells = metrics.sums(luminance, self.cell)
             self._luminance += luminance
-            self._luminance_squares += luminance**2
+            self._cells += cells
+            self._cell_squares += cells**2
         self.curves.append(repeat.curve)
         self.seeds.append(seed)
         self.invalid += [Invalid(x, y, sample, seed) for x, y, sample in film.invalid]
@@ -129,12 +137,14 @@ class Tally:
         return self._luminance / self.repeats
 
     @property
-    def luminance_variance(self) -> NDArray[np.float64]:
-        """float64 (height, width): estimated variance of `luminance`, from how the repeats scatter."""
+    def cell_variance(self) -> NDArray[np.float64]:
+        """float64 (rows, columns): estimated variance of the sum of `luminance` over each cell, from how the repeats
+        scatter.
+        """
         n = self.repeats
-        spread = np.maximum(self._luminance_squares - self._luminance**2 / n, 0)
+        spread = np.maximum(self._cell_squares - self._cells**2 / n, 0)
         # Of equal numbers, what is left is how they were rounded.
-        spread[spread < 1e-13 * self._luminance_squares] = 0
+        spread[spread < 1e-13 * self._cell_squares] = 0
         return spread / max(n - 1, 1) / n
 
     @property

@@ -135,6 +135,21 @@ class Film:
         return hull([goal, *(self.held if self.bound is None else self.ranges)])
 
     @property
+    def sharing(self) -> int:
+        """How many pixels, all in one tile of 16 x 16, shared what their paths found, so that their noise is not
+        independent; 1: none, or unknown, as of a film without an origin.
+        """
+        from .. import _core
+
+        if self.origin is None:
+            return 1
+        try:
+            return _core.sharing(self.origin.settings["algorithm"], self.origin.parameters)
+        except ValueError:
+            # Of another version, with other algorithms.
+            return 1
+
+    @property
     def error(self) -> FilmError:
         """How far the image is from what more samples would make of it: docs/beauty-render.md."""
         from .error import error_of

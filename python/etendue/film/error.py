@@ -32,7 +32,7 @@ def error_of(film: Film) -> FilmError:
     """The error of `film`, estimated from the two halves of each pixel's samples."""
     from .. import _core
 
-    return FilmError(*_core.film_error(*sums_of(film)))
+    return FilmError(*_core.film_error(*sums_of(film), film.sharing))
 
 
 def sums_of(

@@ -14,6 +14,11 @@ struct Diffuse : Bsdf {
     };
 
     template <class F>
+    static F diffuse_share(const SurfaceOf<F>&, const F&) {
+        return 1;
+    }
+
+    template <class F>
     static Vec3<F> f(const SurfaceOf<F>& surface, const Vec3<F>&, const Vec3<F>& wi) {
         return select(wi.z > 0, surface.albedo * F(INV_PI), Vec3<F>(0));
     }

@@ -30,6 +30,11 @@ struct LayeredGgx : Bsdf {
     }
 
     template <class F>
+    static F diffuse_share(const SurfaceOf<F>& surface, const F& cos_o) {
+        return 1 - fresnel_dielectric(cos_o, surface.ior);
+    }
+
+    template <class F>
     static Vec3<F> f(const SurfaceOf<F>& surface, const Vec3<F>& wo, const Vec3<F>& wi) {
         return select(wi.z > 0, f(surface, wo, wi, fresnel_dielectric(wo.z, surface.ior)), Vec3<F>(0));
     }
