@@ -268,6 +268,14 @@ class Bsdf:
         type is 0 where sampling failed.
         """
 
+    def diffuse_share(self, cosines: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+        """
+        float32 (n,) -> (n,): what of f is albedo / pi for wo of these cosines, where paths may be shared.
+        """
+
+    def diffuse_share_in_lanes(self, cosines: Annotated[NDArray[numpy.float32], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+        """Of many at once."""
+
     def values_in_lanes(self, wo: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], wi: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)]) -> tuple:
         """(f, pdf) of many at once, as the path tracers ask for them."""
 
@@ -605,7 +613,7 @@ def film_error(sum: NDArray[numpy.float64], sum_squares: NDArray[numpy.float64],
 
 def sharing(algorithm: str, parameters: Mapping[str, bool | int | float | str]) -> int:
     """
-    How many pixels, all in one tile of 16 x 16, an estimator lets share what their paths find: their estimates are not
+    How many pixels at most, all in one tile of 16 x 16, an estimator lets share what their paths find: their estimates are not
     independent of each other. 1: none. Raises ValueError for names and values that do not fit.
     """
 

@@ -127,8 +127,9 @@ class Algorithm {
     /// anything but the scene, the camera and the parameters, a render would not come out the same again.
     virtual bool prepare(const Preparation&) { return true; }
     /// How many samples, of neighbouring pixels, are best estimated together, as what is found for one is used for the
-    /// others: a power of two; 1: none.
+    /// others; 1: none. The second can be told before it has learned anything.
     virtual uint32_t sharing() const { return 1; }
+    virtual uint32_t sharing_at_most() const { return 1; }
     /// Unbiased estimates of the radiance along the camera rays of a queue, until there are no more. Returns how many rays
     /// it traced. Called by many threads at once.
     virtual uint64_t estimate(const Scene& scene, SampleQueue& queue) const = 0;

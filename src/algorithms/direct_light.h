@@ -110,14 +110,15 @@ template <class F>
 ConnectionOf<F> connection(const SurfacePointOf<F>& point, const Vec3<F>& shading_normal,
                            const LightSampleOf<F>& light, const F& pmf, const BsdfValueOf<F>& bsdf,
                            const Vec3<F>& throughput, const F& edges, Mis mis) {
-    const Vec3<F> reflected = bsdf.f * abs(dot(light.wi, shading_normal)) * light.radiance;
+    const F cos = abs(dot(light.wi, shading_normal));
+    const Vec3<F> reflected = bsdf.f * cos * light.radiance;
     ContributionOf<F> found{Technique::light_sampling, edges};
     found.pdf = pmf * light.pdf;
     found.other_pdf = bsdf.pdf;
     found.weight = light_sampling_weight(mis, found.pdf, found.other_pdf);
     found.unweighted = throughput * reflected / found.pdf;
     return {light.exists && !is_black(reflected), shadow_ray(point, light), found, bsdf.f,
-            light.radiance * (abs(dot(light.wi, shading_normal)) / found.pdf)};
+            light.radiance * (cos / found.pdf)};
 }
 
 /// One number chooses the light and the place along it, so that samples which are stratified over [0, 1) are so over each

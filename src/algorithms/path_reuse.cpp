@@ -66,33 +66,36 @@ void PathReuse::end(size_t sample, const vec3& radiance) {
     y.exists = is_black(y.radiance) ? 0.f : 1.f;
 }
 
-void PathReuse::share(LaneContext& context, SampleQueue& queue) {
-    connections_.assign(paths_.size() * PIXELS, {});
+std::vector<PathReuse::Estimates> PathReuse::share(LaneContext& context) {
+    connections_.assign(paths_.size() * MOST_PIXELS, {});
     for (size_t first = 0; first < paths_.size(); first += LANES) connect(context, first);
     std::vector<float> densities(paths_.size());
     for (size_t k = 0; k < paths_.size(); ++k) densities[k] = density(k);
+    std::vector<Estimates> estimates(paths_.size());
     for (size_t i = 0; i < paths_.size(); ++i) {
         const Path& path = paths_[i];
-        vec3 radiance = path.own;
+        estimates[i] = {path.own, path.own};
         for (uint32_t partner = 0; partner < path.size; ++partner) {
             const size_t k = partner_of(i, partner);
             const Connection& connection = at(i, partner);
             vec3 worth(0);
             if (connection.density > 0) {
                 worth = connection.value / densities[k];
-                radiance += worth * ys_[k].radiance;
+                estimates[i].shared += worth * ys_[k].radiance;
+                if (partner == 0)
+                    estimates[i].alone += connection.value / connection.density * ys_[k].radiance;
             }
-            if (path.observer && paths_[k].beyond) {
-                const Path& found_by = paths_[k];
-                const vec3 shared = worth * found_by.survival;
-                const float own = partner == 0 ? 1.f : 0.f;
-                found_by.beyond->tell(
-                    *path.observer, shared * found_by.shared_light + own * found_by.own_light,
-                    shared * found_by.shared_bounce + own * found_by.own_bounce, partner > 0);
-            }
+            if (path.observer && paths_[k].beyond) tell(path, paths_[k], worth, partner > 0);
         }
-        queue.estimated(i, radiance);
     }
+    return estimates;
+}
+
+void PathReuse::tell(const Path& path, const Path& found_by, const vec3& worth, bool borrowed) {
+    const vec3 shared = worth * found_by.survival;
+    const float own = borrowed ? 0.f : 1.f;
+    found_by.beyond->tell(*path.observer, shared * found_by.shared_light + own * found_by.own_light,
+                          shared * found_by.shared_bounce + own * found_by.own_bounce, borrowed);
 }
 
 size_t PathReuse::partner_of(size_t path, uint32_t partner) const {
@@ -154,9 +157,7 @@ ETENDUE_LANES_FLATTEN void PathReuse::connect(LaneContext& context, size_t first
         valid = valid && bsdf.pdf > 0 && !is_black(bsdf.f);
         if (!any(valid)) continue;
         if (partner > 0) valid = sees_each_other(context, first, hits.point, point, wi, valid);
-        SurfaceOf<Lanes> surface;
-        surface.ior = y[13];
-        const Lanes share = bsdf_diffuse_shares(valid, y[14], surface, cos_shading);
+        const Lanes share = bsdf_diffuse_shares(valid, y[14], y[13], cos_shading);
         const Lanes per_area = cos_y / distance2;
         const LaneVec3 value = bsdf.f * (abs(dot(wi, hits.frame.n)) * per_area * share);
         const Lanes density = bsdf.pdf * per_area;

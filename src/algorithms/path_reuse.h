@@ -30,8 +30,8 @@ class PathReuse {
   public:
     PathReuse() { paths_.reserve(EXPECTED), ys_.reserve(EXPECTED); }
 
-    /// How many pixels' paths are shared: more shadow rays cost more than they bring.
-    static constexpr uint32_t PIXELS = 8;
+    /// How many pixels share their paths at most.
+    static constexpr uint32_t MOST_PIXELS = 16;
 
     static Parameter parameter() {
         return {
@@ -63,8 +63,12 @@ class PathReuse {
     /// A path has ended. `radiance`: all that it found; or, if it came to a shared y, what came to y over its bounce.
     void end(size_t sample, const vec3& radiance);
 
-    /// Once all have ended: connects the paths that are to be shared, and gives the samples their estimates.
-    void share(LaneContext& context, SampleQueue& queue);
+    /// Of a sample, by its path alone, and by those of its group.
+    struct Estimates {
+        vec3 alone, shared;
+    };
+    /// Once all have ended: connects the paths that are to be shared, and gives each sample's estimates.
+    std::vector<Estimates> share(LaneContext& context);
 
     /// Contributions found beyond y, kept until it is known what they are worth to whom.
     class Beyond : public Observer {
@@ -138,13 +142,15 @@ class PathReuse {
     void connect(LaneContext& context, size_t first);
     LaneMask sees_each_other(LaneContext& context, size_t first, const SurfacePointOf<Lanes>& x,
                              const SurfacePointOf<Lanes>& y, const LaneVec3& wi, const LaneMask& on) const;
+    /// A path's observer learns what another of its group, or itself, found beyond y. `worth`: of radiance from there.
+    static void tell(const Path& path, const Path& found_by, const vec3& worth, bool borrowed);
     /// Partner number 0 of a path is itself.
     size_t partner_of(size_t path, uint32_t partner) const;
     /// The sum of the densities that the members of a path's group have of its y.
     float density(size_t path) const;
-    Connection& at(size_t path, uint32_t partner) { return connections_[path * PIXELS + partner]; }
+    Connection& at(size_t path, uint32_t partner) { return connections_[path * MOST_PIXELS + partner]; }
     const Connection& at(size_t path, uint32_t partner) const {
-        return connections_[path * PIXELS + partner];
+        return connections_[path * MOST_PIXELS + partner];
     }
 
     std::vector<Path> paths_;

@@ -6,7 +6,7 @@
 // straight from the camera or after a delta bounce, counts in full.
 #include "algorithms/direct_light.h"
 #include "algorithms/lane_paths.h"
-#include "algorithms/path_reuse.h"
+#include "algorithms/reuse_pilot.h"
 #include "algorithms/russian_roulette.h"
 
 namespace etendue {
@@ -22,25 +22,37 @@ class Pathtracer : public Algorithm {
           reuses_paths_(parameters.get<bool>("path_reuse")),
           roulette_(parameters) {}
 
-    bool learns(const Scene& scene) const override { return light_choice_.learns(scene); }
+    bool learns(const Scene& scene) const override { return reuses_paths_ || light_choice_.learns(scene); }
     bool prepare(const Preparation& preparation) override {
-        return light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_);
+        if (reuses_paths_) {
+            const auto try_reuse = [&](SampleQueue& queue) {
+                LaneContext context(preparation.scene);
+                PathReuse reuse;
+                follow(context, queue, reuse);
+                const uint64_t rays = context.rays;
+                return ReuseTrial{reuse.share(context), rays, context.rays - rays};
+            };
+            const auto best = best_sharing(preparation, try_reuse);
+            if (!best) return false;
+            sharing_ = *best;
+        }
+        return !light_choice_.learns(preparation.scene) ||
+               light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_);
     }
 
-    uint32_t sharing() const override { return reuses_paths_ ? PathReuse::PIXELS : 1; }
+    uint32_t sharing() const override { return sharing_; }
+    uint32_t sharing_at_most() const override { return reuses_paths_ ? PathReuse::MOST_PIXELS : 1; }
 
     uint64_t estimate(const Scene& scene, SampleQueue& queue) const override {
-        if (!reuses_paths_) {
-            return follow<Paths>(
+        if (sharing_ == 1) {
+            return etendue::follow<Paths>(
                 scene, queue, [&](LaneContext& context, Paths& paths) { extend(context, paths, nullptr); });
         }
         LaneContext context(scene);
         PathReuse reuse;
-        follow<Paths>(
-            context, queue, [&](const CameraSample& sample) { reuse.begin(sample); },
-            [&](Paths& paths) { extend(context, paths, &reuse); },
-            [&](size_t sample, const vec3& radiance) { reuse.end(sample, radiance); });
-        reuse.share(context, queue);
+        follow(context, queue, reuse);
+        const std::vector<PathReuse::Estimates> estimates = reuse.share(context);
+        for (size_t i = 0; i < estimates.size(); ++i) queue.estimated(i, estimates[i].shared);
         return context.rays;
     }
 
@@ -66,6 +78,13 @@ class Pathtracer : public Algorithm {
         // throughput was by then, and 1 / (1 - q) of a roulette before.
         Lanes scale = 1, survival = 1;
     };
+
+    void follow(LaneContext& context, SampleQueue& queue, PathReuse& reuse) const {
+        etendue::follow<Paths>(
+            context, queue, [&](const CameraSample& sample) { reuse.begin(sample); },
+            [&](Paths& paths) { extend(context, paths, &reuse); },
+            [&](size_t sample, const vec3& radiance) { reuse.end(sample, radiance); });
+    }
 
     /// By an edge. `reuse`: null where paths are not shared.
     void extend(LaneContext& context, Paths& paths, PathReuse* reuse) const {
@@ -165,6 +184,7 @@ class Pathtracer : public Algorithm {
     LightChoice light_choice_;
     const Mis mis_;
     const bool reuses_paths_;
+    uint32_t sharing_ = 1;
     const RussianRoulette roulette_;
 };
 

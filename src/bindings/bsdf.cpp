@@ -53,6 +53,23 @@ nb::dict draw_bsdf(const PythonBsdf& bsdf, const Vectors3& wo, const Vectors3& u
     return out;
 }
 
+OutScalars diffuse_share(const PythonBsdf& bsdf, const Scalars& cosines) {
+    auto out = new_array<OutScalars>({cosines.shape(0)});
+    for (size_t i = 0; i < cosines.shape(0); ++i)
+        out.data()[i] = bsdf_diffuse_share(bsdf.kind, bsdf.surface.ior, cosines.data()[i]);
+    return out;
+}
+
+OutScalars diffuse_share_in_lanes(const PythonBsdf& bsdf, const Scalars& cosines) {
+    auto out = new_array<OutScalars>({cosines.shape(0)});
+    in_lanes(cosines.shape(0), [&](size_t first, const LaneMask& on) {
+        PerLane<float> some{};
+        for_lanes(on, [&](int i) { some[i] = cosines.data()[first + static_cast<size_t>(i)]; });
+        set_lanes(out, first, on, bsdf_diffuse_shares(on, bsdf.kind, bsdf.surface.ior, lanes_of(some)));
+    });
+    return out;
+}
+
 /// A BSDF's parameters in all lanes.
 SurfaceOf<Lanes> in_all_lanes(const Surface& s) {
     return {LaneVec3(s.albedo), s.ior, s.roughness, s.absorb, LaneMask(s.coated), LaneMask(s.front)};
@@ -129,6 +146,10 @@ void bind_bsdf(nb::module_& m) {
              "Returns a dict of wi (n, 3), weight (n, 3) = f |cos| / pdf, pdf (n,), eta2 (n,) and type (n,) "
              "uint8 of BRDF_ bits;\n"
              "type is 0 where sampling failed.")
+        .def("diffuse_share", &diffuse_share, nb::arg("cosines"),
+             "float32 (n,) -> (n,): what of f is albedo / pi for wo of these cosines, where paths may be "
+             "shared.")
+        .def("diffuse_share_in_lanes", &diffuse_share_in_lanes, nb::arg("cosines"), "Of many at once.")
         .def("values_in_lanes", &values_in_lanes, nb::arg("wo"), nb::arg("wi"),
              "(f, pdf) of many at once, as the path tracers ask for them.")
         .def("sample_in_lanes", &draw_in_lanes, nb::arg("wo"), nb::arg("u"),

@@ -267,10 +267,11 @@ void bind_renderer(nb::module_& m) {
     m.def(
         "sharing",
         [](const std::string& algorithm, const std::map<std::string, ParameterValue>& parameters) {
-            return make_algorithm(algorithm, parameters)->sharing();
+            return make_algorithm(algorithm, parameters)->sharing_at_most();
         },
         nb::arg("algorithm"), nb::arg("parameters"),
-        "How many pixels, all in one tile of 16 x 16, an estimator lets share what their paths find: their "
+        "How many pixels at most, all in one tile of 16 x 16, an estimator lets share what their paths find: "
+        "their "
         "estimates are not\nindependent of each other. 1: none. Raises ValueError for names and values that "
         "do not fit.");
 }

@@ -72,9 +72,8 @@ BsdfSample bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, fl
         kind, [&](auto bsdf) { return decltype(bsdf)::sample(surface, wo, lobe, u); });
 }
 
-float bsdf_diffuse_share(BsdfKind kind, const Surface& surface, float cos_o) {
-    return Bsdfs::dispatch<float>(kind,
-                                  [&](auto bsdf) { return decltype(bsdf)::diffuse_share(surface, cos_o); });
+float bsdf_diffuse_share(BsdfKind kind, float ior, float cos_o) {
+    return Bsdfs::dispatch<float>(kind, [&](auto bsdf) { return decltype(bsdf)::diffuse_share(ior, cos_o); });
 }
 
 bool bsdf_is_delta(BsdfKind kind) {
@@ -108,11 +107,10 @@ ETENDUE_LANES_FLATTEN BsdfSampleOf<Lanes> bsdf_samples(const LaneMask& on, const
     return out;
 }
 
-Lanes bsdf_diffuse_shares(const LaneMask& on, const Lanes& kinds, const SurfaceOf<Lanes>& surfaces,
-                          const Lanes& cos_o) {
+Lanes bsdf_diffuse_shares(const LaneMask& on, const Lanes& kinds, const Lanes& iors, const Lanes& cos_o) {
     Lanes out = 0;
     Bsdfs::for_kinds(on, kinds, [&](auto bsdf, const LaneMask& mask) {
-        out = select(mask, decltype(bsdf)::diffuse_share(surfaces, cos_o), out);
+        out = select(mask, decltype(bsdf)::diffuse_share(iors, cos_o), out);
     });
     return out;
 }

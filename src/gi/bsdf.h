@@ -95,10 +95,10 @@ struct Bsdf {
     static constexpr bool is_delta = false;       // all of its lobes are
     static constexpr bool is_reciprocal = false;  // f(wo, wi) == f(wi, wo)
 
-    /// The diffuse part: f(wo, wi) = diffuse_share(wo.z) albedo / pi + the rest, which is nowhere negative, for wi on wo's
-    /// side of the surface.
+    /// The diffuse part: f(wo, wi) = diffuse_share(ior, wo.z) albedo / pi + the rest, which is nowhere negative, for wi on
+    /// wo's side of the surface.
     template <class F>
-    static F diffuse_share(const SurfaceOf<F>&, const F& /*cos_o*/) {
+    static F diffuse_share(const F& /*ior*/, const F& /*cos_o*/) {
         return 0;
     }
     /// What of the light that arrives leaves again, about, and from nowhere in particular: for pictures of
@@ -125,7 +125,7 @@ vec3 bsdf_albedo(BsdfKind kind, const Surface& surface);
 vec3 bsdf_f(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi);
 float bsdf_pdf(BsdfKind kind, const Surface& surface, const vec3& wo, const vec3& wi);
 BsdfSample bsdf_sample(BsdfKind kind, const Surface& surface, const vec3& wo, float lobe, const vec2& u);
-float bsdf_diffuse_share(BsdfKind kind, const Surface& surface, float cos_o);
+float bsdf_diffuse_share(BsdfKind kind, float ior, float cos_o);
 bool bsdf_is_delta(BsdfKind kind);
 
 // And for as many surfaces as there are lanes, each of a kind of its own, given as a number; 0 where a lane is off.
@@ -133,8 +133,7 @@ BsdfValueOf<Lanes> bsdf_values(const LaneMask& on, const Lanes& kinds, const Sur
                                const LaneVec3& wo, const LaneVec3& wi);
 BsdfSampleOf<Lanes> bsdf_samples(const LaneMask& on, const Lanes& kinds, const SurfaceOf<Lanes>& surfaces,
                                  const LaneVec3& wo, const Lanes& lobe, const LaneVec2& u);
-Lanes bsdf_diffuse_shares(const LaneMask& on, const Lanes& kinds, const SurfaceOf<Lanes>& surfaces,
-                          const Lanes& cos_o);
+Lanes bsdf_diffuse_shares(const LaneMask& on, const Lanes& kinds, const Lanes& iors, const Lanes& cos_o);
 
 /// The registry: every BSDF, its kind being its index here, and every material type in matching order.
 struct BsdfInfo {

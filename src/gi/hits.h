@@ -61,7 +61,7 @@ struct SurfaceHits {
 
     /// The BSDF's diffuse part for the direction that the rays came from, see Bsdf, and its kind.
     Lanes diffuse_shares(const LaneMask& on) const {
-        return bsdf_diffuse_shares(on, bsdf_, surface_, wo_local.z);
+        return bsdf_diffuse_shares(on, bsdf_, surface_.ior, wo_local.z);
     }
     const SurfaceOf<Lanes>& surfaces() const { return surface_; }
     const Lanes& bsdfs() const { return bsdf_; }

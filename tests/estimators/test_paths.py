@@ -34,7 +34,8 @@ def test_a_replay_tells_where_the_radiance_is_from(estimator: Estimator) -> None
     for x, y in PIXELS:
         path = _core.replay(film, x, y, 0)
         found = [c for vertex in path.vertices for c in vertex.contributions]
-        assert not any(c.borrowed for c in found) and all(c.borrowed for c in path.borrowed)
+        assert not any(c.borrowed for c in found)
+        assert all(c.borrowed for c in path.borrowed)
         shared += len(path.borrowed)
         found += path.borrowed
         total = sum((np.multiply(c.unweighted, c.weight) for c in found), np.zeros(3))

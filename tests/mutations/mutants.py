@@ -36,6 +36,7 @@ BSDF = "tests/statistics/test_bsdf_sampling.py"
 LIGHTS = "tests/statistics/test_light_sampling.py"
 CHOICE = "tests/statistics/test_light_choice.py"
 GUIDE = "tests/estimators/test_light_guide.py"
+REUSE = ("tests/estimators/test_path_reuse.py", "-k", "mean")
 SAMPLER = "tests/statistics/test_sampler.py"
 
 
@@ -64,6 +65,55 @@ MUTANTS = (
         "choice_pmfs(context, paths, hits, could_be_sampled) * light.pdf",
         "light.pdf",
         (ANALYTIC, "-k", "two_lamps"),
+    ),
+    Mutant(
+        "paths shared with pixels that do not see them",
+        "algorithms/path_reuse.cpp",
+        "sees_each_other(context, first, hits.point, point, wi, valid)",
+        "valid",
+        REUSE,
+    ),
+    Mutant(
+        "paths shared by weights that forget who else could have found them",
+        "algorithms/path_reuse.cpp",
+        "at(path - of.place + place, (of.place + of.size - place) % of.size).density",
+        "at(path, 0).density",
+        REUSE,
+    ),
+    Mutant(
+        "black surfaces taken for finders of paths",
+        "algorithms/path_reuse.cpp",
+        "bsdf.pdf > 0 && !is_black(bsdf.f)",
+        "bsdf.pdf > 0",
+        REUSE,
+    ),
+    Mutant(
+        "roulette before sharing forgotten",
+        "algorithms/path_reuse.cpp",
+        "path.survival * (y.radiance + path.shared_bounce * radiance)",
+        "(y.radiance + path.shared_bounce * radiance)",
+        REUSE,
+    ),
+    Mutant(
+        "light over a coat's mirror kept from its own pixel",
+        "algorithms/path_reuse.cpp",
+        "path.own_bounce * radiance",
+        "vec3(0)",
+        REUSE,
+    ),
+    Mutant(
+        "a coat that lets as much through in all directions",
+        "algorithms/path_reuse.cpp",
+        "per_area * share",
+        "per_area",
+        REUSE,
+    ),
+    Mutant(
+        "distance to what is shared forgotten",
+        "algorithms/path_reuse.cpp",
+        "bsdf.pdf * per_area",
+        "bsdf.pdf * cos_y",
+        REUSE,
     ),
     Mutant(
         "cosine twice",

@@ -78,8 +78,8 @@ def test_the_error_is_that_of_the_page(scene: Scene) -> None:
         error = np.sqrt(squared[part].mean()) / radiance
         assert found.tiles[row, column] == pytest.approx(error, rel=1e-5)
         of_pixels = squared[part].sum(axis=2)
-        # In each of three blocks of samples a pixel has shared paths with seven others.
-        correlated = 1 + 7 / 3
+        # In each of three blocks of samples a pixel may have shared paths with 15 others.
+        correlated = 1 + 15 / 3
         fourth = correlated * (of_pixels**2).sum()
         spreads[row, column] = error * np.sqrt(fourth) / (2 * total) if total > 0 else 0
     assert (found.tiles == 0).any()

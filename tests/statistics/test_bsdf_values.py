@@ -141,3 +141,26 @@ def test_uniform_and_importance_sampling_agree(case: Case) -> None:
             assert welch(uniform[:, channel], weights[:, channel]) > sidak(
                 12 * len(cases(("", "coated", "metallic")))
             )
+
+
+@pytest.mark.parametrize("case", cases() + cases(("dense", "vacuum"), (0.1,)), ids=str)
+def test_the_rest_beside_the_diffuse_part_is_not_negative(case: Case) -> None:
+    """Paths that are shared take the diffuse part for other directions, and the rest for their own pixel."""
+    albedo = (0.9, 0.5, 0.1)
+    bsdf, rng = case.make(albedo), case.rng(5)
+    wo, wi = (np.abs(sphere(4000, rng)) for _ in range(2))
+    diffuse = bsdf.diffuse_share(wo[:, 2].copy())[:, None] * np.array(albedo) / np.pi
+    assert (diffuse >= 0).all()
+    assert (bsdf.f(wo, wi) - diffuse >= -1e-6).all()
+
+
+@pytest.mark.parametrize("ior", [1.0, 1.3, 2.4])
+def test_the_rest_of_a_coated_surface_is_its_coat(ior: float) -> None:
+    """A smooth coat reflects next to nothing but in the direction of a mirror."""
+    rng = np.random.default_rng(6)
+    wo, wi = np.abs(sphere(4000, rng)), np.abs(sphere(4000, rng))
+    mirror = wo * (-1, -1, 1)
+    away = ((mirror * wi).sum(1) < 0.8) & (wo[:, 2] > 0.3) & (wi[:, 2] > 0.3)
+    bsdf = _core.Bsdf("layered_ggx", albedo=(0.9, 0.5, 0.1), ior=ior, roughness=0.01)
+    diffuse = bsdf.diffuse_share(wo[:, 2].copy())[:, None] * np.array((0.9, 0.5, 0.1)) / np.pi
+    np.testing.assert_allclose(bsdf.f(wo, wi)[away], diffuse[away], rtol=0.01, atol=1e-4)

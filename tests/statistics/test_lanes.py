@@ -36,6 +36,7 @@ def test_bsdfs(case: Case) -> None:
     assert drawn.keys() == one_by_one.keys()
     for key in drawn:
         assert_same(drawn[key], one_by_one[key])
+    assert_same(bsdf.diffuse_share_in_lanes(wo[:, 2].copy()), bsdf.diffuse_share(wo[:, 2].copy()))
 
 
 @pytest.mark.parametrize("kind", _core.samplers())

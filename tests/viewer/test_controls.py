@@ -85,7 +85,7 @@ def move_all(hand: Hand) -> None:
             hand.click(hand.place("Settings", f"##{label}"))
             assert not document.config.beauty_render
     for key in document.keys_of():
-        if key in ("mis", "sampling", "sampler", "filter", "seed", "max_light_path_length"):
+        if key in ("mis", "path_reuse", "sampling", "sampler", "filter", "seed", "max_light_path_length"):
             once("Settings", key, (key,))
     hand.open("Camera")
     once("Camera", "auto focal depth", ("auto_focus",))

@@ -14,7 +14,7 @@ struct Diffuse : Bsdf {
     };
 
     template <class F>
-    static F diffuse_share(const SurfaceOf<F>&, const F&) {
+    static F diffuse_share(const F&, const F&) {
         return 1;
     }
 

@@ -30,8 +30,8 @@ struct LayeredGgx : Bsdf {
     }
 
     template <class F>
-    static F diffuse_share(const SurfaceOf<F>& surface, const F& cos_o) {
-        return 1 - fresnel_dielectric(cos_o, surface.ior);
+    static F diffuse_share(const F& ior, const F& cos_o) {
+        return 1 - fresnel_dielectric(cos_o, ior);
     }
 
     template <class F>
