@@ -136,8 +136,8 @@ class Film:
 
     @property
     def sharing(self) -> int:
-        """How many pixels at most, all in one tile of 16 x 16, shared what their paths found, so that their noise is not
-        independent; 1: none, or unknown, as of a film without an origin.
+        """How many pixels at most, all in one tile of 16 x 16, shared what their paths found, so that their noise is
+        not independent; 1: none, or unknown, as of a film without an origin.
         """
         from .. import _core
 
