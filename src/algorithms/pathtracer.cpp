@@ -4,6 +4,8 @@
 // and may find a light by chance.  Light that both can find is shared by weights that add up to 1 ("mis":
 // power or balance heuristic), or left to light sampling ("mis": none).  Light that only chance can find,
 // straight from the camera or after a delta bounce, counts in full.
+//
+// What paths find from their second surface on may be shared between pixels ("path_reuse"), see path_reuse.h.
 #include "algorithms/direct_light.h"
 #include "algorithms/lane_paths.h"
 #include "algorithms/reuse_pilot.h"
