@@ -102,7 +102,7 @@ class PathReuse {
     void observe_beyond(LaneContext& context, const LaneMask& on, const PerLane<size_t>& samples);
 
   private:
-    static constexpr size_t EXPECTED = 4096;
+    static constexpr size_t EXPECTED = 4096;  // samples of a queue, about: for memory to be asked for once
 
     /// y, as all of its group want to know it: a line of the cache.
     struct alignas(64) Shared {

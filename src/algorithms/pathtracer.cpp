@@ -126,10 +126,13 @@ class Pathtracer : public Algorithm {
         paths.throughput = select(is_shared, LaneVec3(1), paths.throughput * bounce.weight);
         paths.eta_scale *= bounce.eta2;
         goes_on = goes_on && !is_black(select(is_shared, bounce.weight, paths.throughput));
-        const Lanes before = max_component(paths.throughput);
+        const LaneVec3 before = paths.throughput;
         goes_on = roulette_.survives(context, paths.throughput, paths.eta_scale * paths.scale, paths.edges,
                                      goes_on);
-        paths.survival = select(is_first, max_component(paths.throughput) / before, paths.survival);
+        if (reuse) {
+            const Lanes survival = max_component(paths.throughput) / max_component(before);
+            paths.survival = select(is_first, survival, paths.survival);
+        }
 
         paths.prev_position = hits.point.position;
         paths.prev_learned = learned;
@@ -155,7 +158,7 @@ class Pathtracer : public Algorithm {
         shared = shared && share > 0;
         if (!any(shared)) return shared;
         reuse.observe_beyond(context, shared, paths.sample);
-        // The light that was sampled here is asked for now, as it belongs to what is handed over.
+        // The light that was sampled here belongs to what is handed over: its shadow ray cannot wait for the next one.
         ConnectionOf<Lanes> connection = paths.connection;
         connection.found.unweighted = connection.irradiance;
         const LaneVec3 irradiance = light_over(context, connection, shared);

@@ -80,10 +80,11 @@ def test_the_mean_stays(settings: dict[str, object]) -> None:
 
 
 def test_noise_falls_and_is_not_that_of_the_next_pixel() -> None:
-    place = cornell()
+    # Of a part of the back wall, as pixels of larger pictures see it.
+    world, _ = cornell()
+    place = world, _core.Camera((0, 1, 2.4), (-0.1, 0.1, -1), (0, 1, 0), 15, 0, 1, True, SIDE, SIDE)
     ours, theirs = means(place, True, sampler="sobol"), means(place, False, sampler="sobol")
-    # In the median, as the variance of the glass block's caustic, which is found by chance, is that of a few samples.
-    assert np.median(ours.var(0).mean(2) / theirs.var(0).mean(2)) < 0.75
+    assert np.median(ours.var(0).mean(2) / theirs.var(0).mean(2)) < 0.5
     noise = (ours - ours.mean(0)).mean(3)
     noise /= noise.std(0)
     for there in ((0, 1), (1, 0)):
@@ -91,7 +92,7 @@ def test_noise_falls_and_is_not_that_of_the_next_pixel() -> None:
         assert abs((noise[:, 1:, 1:] * shifted).mean()) < 0.1
     # As a whole they share it, which nobody may forget who adds up pixels.
     tile = noise.reshape(SEEDS, 2, 16, 2, 16).mean((2, 4))
-    assert tile.var(0).mean() * 16 * 16 > 1.4
+    assert tile.var(0).mean() * 16 * 16 > 2
 
 
 def test_pixels_share_where_it_pays() -> None:
