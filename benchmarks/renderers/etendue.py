@@ -16,7 +16,7 @@ _core = core_at(os.environ.get("ETENDUE_BENCHMARK_CORE"))
 
 
 class Renderer:
-    """See the package. Options: `sampler` and `path_reuse`, besides those of all."""
+    """See the package. Options: `sampler`, `path_reuse` and `light_tracing`, besides those of all."""
 
     rays: int | None = None
 
@@ -48,8 +48,9 @@ class Renderer:
         self.parameters: dict[str, Any] = {"max_cam_path_length": world.edges}
         if not options.get("as_users"):
             self.parameters["rr_threshold"] = 0.0
-        if "path_reuse" in options:
-            self.parameters["path_reuse"] = options["path_reuse"]
+        for name in ("path_reuse", "light_tracing"):
+            if name in options:
+                self.parameters[name] = options[name]
 
     def auto_focus(self) -> float:
         """The distance that a scene file's `auto_focus` focuses on."""

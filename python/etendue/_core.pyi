@@ -432,6 +432,13 @@ class Camera:
         directions, (n, 3) each.
         """
 
+    def films_of(self, points: Annotated[NDArray[numpy.float32], dict(shape=(None, 3), order='C', device='cpu', writable=False)], lens: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> tuple[Annotated[NDArray[numpy.float32], dict(shape=(None, 2))], Annotated[NDArray[numpy.float32], dict(shape=(None,))]]:
+        """
+        The inverse of `rays`. points: float32 (n, 3). lens: float32 (n, 2) in [0, 1). Returns where rays from there that meet the
+        points come from the film, (n, 2), in pixels and maybe outside of the image, and how many pixels of film see a steradian
+        there, (n,). NaN behind a perspective camera.
+        """
+
 def auto_focus(scene: Scene, camera: Camera) -> float:
     """
     Geometric mean of the hit distances of pixel-centre rays over the middle quarter (w/4 x h/4) of the image; the camera's
@@ -441,6 +448,11 @@ def auto_focus(scene: Scene, camera: Camera) -> float:
 def filter_offsets(filter: str, u: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None, 2))]:
     """
     u: float32 (n, 2) in [0, 1) -> offsets from the pixel's centre drawn from the filter, (n, 2).
+    """
+
+def filter_density(filter: str, offsets: Annotated[NDArray[numpy.float32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float32], dict(shape=(None,))]:
+    """
+    offsets: float32 (n, 2) from the pixel's centre, in pixels -> their density per pixel of area, (n,).
     """
 
 class Films:
@@ -558,6 +570,10 @@ class Renderer:
         """
 
     @property
+    def light_paths(self) -> int:
+        """How many paths from lights belong to a sample of every pixel; 0: none."""
+
+    @property
     def error(self) -> float:
         """
         Error of the film as the running or last render last saw it (see film_error); infinite where it cannot
@@ -639,6 +655,10 @@ class Contribution:
     @property
     def borrowed(self) -> bool:
         """It was found by another pixel's path, and shared."""
+
+    @property
+    def from_light(self) -> bool:
+        """It was found by a path from a light."""
 
     @property
     def pdf(self) -> float:
@@ -740,6 +760,10 @@ class PathRecord:
 
     @property
     def vertices(self) -> list[PathVertex]: ...
+
+    @property
+    def from_lights(self) -> list[Contribution]:
+        """Contributions that paths from lights brought to this sample."""
 
     @property
     def borrowed(self) -> list[Contribution]:

@@ -51,11 +51,11 @@ class Replay:
             yield ""
             yield from _vertex_lines(number, vertex)
         if self.path.borrowed:
-            total = sum(
-                (np.multiply(found.unweighted, found.weight) for found in self.path.borrowed), np.zeros(3)
-            )
             yield ""
-            yield f"found by the paths of other pixels, and shared: {_triple(total)}"
+            yield f"found by the paths of other pixels, and shared: {_triple(_total(self.path.borrowed))}"
+        if self.path.from_lights:
+            yield ""
+            yield f"found by paths from lights: {_triple(_total(self.path.from_lights))}"
 
     def save(self, path: str | Path, scene: Scene) -> None:
         """Draw the path over a picture of `scene`, from its camera, as an SVG file.
@@ -93,6 +93,10 @@ def _vertex_lines(number: int, vertex: _core.PathVertex) -> Iterator[str]:
             f"survives, x {1 / (1 - vertex.roulette_q):.4g}" if vertex.roulette_survived else "ends here"
         )
         yield f"   Russian roulette, q {vertex.roulette_q:.4g}: {outcome}"
+
+
+def _total(contributions: Sequence[_core.Contribution]) -> np.ndarray:
+    return np.sum([np.multiply(found.unweighted, found.weight) for found in contributions], axis=0)
 
 
 def _contribution(found: _core.Contribution) -> str:

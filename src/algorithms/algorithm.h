@@ -117,6 +117,12 @@ struct Preparation {
     std::function<bool(uint32_t count, const std::function<void(uint32_t)>& work)> for_each;
 };
 
+/// Light that a path from a light brought to the film.
+struct Splat {
+    vec2 film;           // in pixels, (0, 0) the top left corner
+    Contribution found;  // of a pixel that sees this place; for a filter of area 1
+};
+
 class Algorithm {
   public:
     virtual ~Algorithm() = default;
@@ -130,6 +136,12 @@ class Algorithm {
     /// others; 1: none. The second can be told before it has learned anything.
     virtual uint32_t sharing() const { return 1; }
     virtual uint32_t sharing_at_most() const { return 1; }
+    /// How many paths from lights belong to a sample of every pixel. What they bring is added to what `estimate` finds, which
+    /// leaves it out.
+    virtual uint32_t light_paths() const { return 0; }
+    /// One of them by its number, whose random numbers have begun; for the scene and the camera that it has prepared for. What
+    /// neighbours in number read is near each other in memory.
+    virtual std::optional<Splat> light_path(Context&, uint32_t /*number*/) const { return std::nullopt; }
     /// Unbiased estimates of the radiance along the camera rays of a queue, until there are no more. Returns how many rays
     /// it traced. Called by many threads at once.
     virtual uint64_t estimate(const Scene& scene, SampleQueue& queue) const = 0;

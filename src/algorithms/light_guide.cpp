@@ -126,8 +126,7 @@ class Explorer {
           mis_(mis),
           roulette_(Parameters(RussianRoulette::parameters(), {})),
           // Other lights as often as triangles, so that a strong sky behind a roof does not keep all trials for itself.
-          factors_(CellSquares::even().factors(preparation.scene.light_sampler().has_others() ? 0.5f : 1.f)) {
-    }
+          factors_(LightFactors::even(preparation.scene.light_sampler().has_others() ? 0.5f : 1.f)) {}
 
     float triangles_share() const { return factors_.triangles_share; }
 

@@ -22,7 +22,8 @@ struct ContributionOf {
     F weight = 1;           // of the technique among those that could have found the same path (MIS)
     F pdf = 0;        // of the last direction by this technique, in solid angle; 0: no density, as of a delta
     F other_pdf = 0;  // of the same direction by the other technique
-    bool borrowed = false;  // found by another pixel's path, see path_reuse.h
+    bool borrowed = false;    // found by another pixel's path, see path_reuse.h
+    bool from_light = false;  // found by a path from a light, see light_tracing.h
 };
 using Contribution = ContributionOf<float>;
 

@@ -8,7 +8,8 @@
 // What paths find from their second surface on may be shared between pixels ("path_reuse"), see path_reuse.h.
 #include "algorithms/direct_light.h"
 #include "algorithms/lane_paths.h"
-#include "algorithms/reuse_pilot.h"
+#include "algorithms/light_tracing.h"
+#include "algorithms/pilot.h"
 #include "algorithms/russian_roulette.h"
 
 namespace etendue {
@@ -22,28 +23,40 @@ class Pathtracer : public Algorithm {
           light_choice_(parameters),
           mis_(mis_of(parameters)),
           reuses_paths_(parameters.get<bool>("path_reuse")),
+          may_trace_light_(parameters.get<bool>("light_tracing")),
           roulette_(parameters) {}
 
-    bool learns(const Scene& scene) const override { return reuses_paths_ || light_choice_.learns(scene); }
+    bool learns(const Scene& scene) const override {
+        return reuses_paths_ || traces_light(scene) || light_choice_.learns(scene);
+    }
     bool prepare(const Preparation& preparation) override {
-        if (reuses_paths_) {
+        const Scene& scene = preparation.scene;
+        if (reuses_paths_ || traces_light(scene)) {
             const auto try_reuse = [&](SampleQueue& queue) {
-                LaneContext context(preparation.scene);
+                LaneContext context(scene);
                 PathReuse reuse;
                 follow(context, queue, reuse);
                 const uint64_t rays = context.rays;
                 return ReuseTrial{reuse.share(context), rays, context.rays - rays};
             };
-            const auto best = best_sharing(preparation, try_reuse);
-            if (!best) return false;
-            sharing_ = *best;
+            const auto pilot = fly(preparation, reuses_paths_, try_reuse);
+            if (!pilot) return false;
+            if (traces_light(scene) &&
+                !light_tracing_.prepare(preparation, *pilot, MAX_CAM_PATH_LENGTH, light_choice_.kind(), mis_))
+                return false;
+            sharing_ = pilot->sharing;
         }
-        return !light_choice_.learns(preparation.scene) ||
+        return !light_choice_.learns(scene) ||
                light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_);
     }
 
     uint32_t sharing() const override { return sharing_; }
     uint32_t sharing_at_most() const override { return reuses_paths_ ? PathReuse::MOST_PIXELS : 1; }
+
+    uint32_t light_paths() const override { return light_tracing_.paths(); }
+    std::optional<Splat> light_path(Context& context, uint32_t number) const override {
+        return light_tracing_.path(context, number);
+    }
 
     uint64_t estimate(const Scene& scene, SampleQueue& queue) const override {
         if (sharing_ == 1) {
@@ -64,10 +77,13 @@ class Pathtracer : public Algorithm {
         all.push_back(LightChoice::parameter());
         all.push_back(mis_parameter());
         all.push_back(PathReuse::parameter());
+        all.push_back(LightTracing::parameter());
         return all;
     }
 
   private:
+    bool traces_light(const Scene& scene) const { return may_trace_light_ && LightTracing::may_pay(scene); }
+
     struct Paths : LanePaths {
         // Where each came from last, and how that direction was chosen: its solid-angle pdf, or by no density at all.
         LaneVec3 prev_position;
@@ -79,6 +95,8 @@ class Pathtracer : public Algorithm {
         // Of paths that are shared, from where on throughput and radiance begin anew: the largest component of what the
         // throughput was by then, and 1 / (1 - q) of a roulette before.
         Lanes scale = 1, survival = 1;
+        // Of those that light may be traced along, see LightTracing::CameraPath.
+        Lanes film_density = 0, cos_g = 1, area_density = 1;
     };
 
     void follow(LaneContext& context, SampleQueue& queue, PathReuse& reuse) const {
@@ -108,13 +126,21 @@ class Pathtracer : public Algorithm {
                 found.weight = select(could_be_sampled,
                                       bsdf_sampling_weight(mis_, found.pdf, found.other_pdf), Lanes(1));
             }
+            const LaneMask could_be_traced =
+                hits.is_light && !is_first && paths.prev_delta && paths.film_density > 0;
+            if (any(could_be_traced)) {
+                const Lanes light_density = choice_pmfs(context, paths, hits, could_be_traced) * light.pdf;
+                const Lanes weight = light_tracing_.weight(
+                    {paths.film_density, paths.cos_g, paths.area_density, light_density});
+                found.weight = select(could_be_traced, weight, found.weight);
+            }
             paths.radiance += context.light(found, hits.is_light);
         }
         LaneMask goes_on = hits.valid && paths.edges < MAX_CAM_PATH_LENGTH;
 
         // Light sampled on purpose, one edge further.
         hits.read_colours();
-        const PerLane<const LightFactors*> learned = light_choice_.learned(hits, goes_on);
+        PerLane<const LightFactors*> learned = light_choice_.learned(hits, goes_on && !hits.is_delta);
         paths.connection = connect_to_lights(context, hits, goes_on, paths.throughput, paths.edges + 1,
                                              light_choice_.kind(), learned, mis_);
 
@@ -129,6 +155,7 @@ class Pathtracer : public Algorithm {
         const LaneVec3 before = paths.throughput;
         goes_on = roulette_.survives(context, paths.throughput, paths.eta_scale * paths.scale, paths.edges,
                                      goes_on);
+        if (light_tracing_.paths() > 0) mark_traceable(paths, hits, is_first, bounce, learned);
         if (reuse) {
             const Lanes survival = max_component(paths.throughput) / max_component(before);
             paths.survival = select(is_first, survival, paths.survival);
@@ -172,6 +199,27 @@ class Pathtracer : public Algorithm {
         return shared;
     }
 
+    /// Which paths go from their first surface over delta surfaces alone, so that light may have been traced along them.
+    void mark_traceable(Paths& paths, const SurfaceHits& hits, const LaneMask& is_first,
+                        const BsdfSampleOf<Lanes>& bounce, PerLane<const LightFactors*>& learned) const {
+        const Lanes begins =
+            bounce.pdf * light_tracing_.film_per_etendue(hits.point.normal, paths.rays.direction,
+                                                         lanes_of(hits.found.distance), bounce.wi);
+        const LaneMask goes_on =
+            hits.is_delta && is_reversible(hits.is_bent, hits.frame.n, hits.point.normal, bounce.wi);
+        paths.film_density = select(is_first, select(hits.is_delta, Lanes(0), begins),
+                                    select(goes_on, paths.film_density, Lanes(0)));
+        const LaneMask traceable = paths.film_density > 0 && !is_first;
+        if (!any(traceable)) return;
+        paths.cos_g = abs(dot(bounce.wi, hits.point.normal));
+        PerLane<float> area_densities{};
+        for_lanes(traceable, [&](int i) {
+            area_densities[i] = light_tracing_.area_density(hits.found.part[i]->mesh, hits.found.triangle[i]);
+            learned[i] = light_tracing_.light_factors();
+        });
+        paths.area_density = lanes_of(area_densities);
+    }
+
     /// Probabilities with which the lights that were found, and what of them, would have been chosen on purpose; 0 for the
     /// other lanes.
     Lanes choice_pmfs(const LaneContext& context, const Paths& paths, const SurfaceHits& hits,
@@ -188,7 +236,8 @@ class Pathtracer : public Algorithm {
     const float MAX_CAM_PATH_LENGTH;
     LightChoice light_choice_;
     const Mis mis_;
-    const bool reuses_paths_;
+    const bool reuses_paths_, may_trace_light_;
+    LightTracing light_tracing_;
     uint32_t sharing_ = 1;
     const RussianRoulette roulette_;
 };

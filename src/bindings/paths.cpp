@@ -38,6 +38,7 @@ void bind_replay(nb::module_& m) {
             "(3,): radiance, as the technique alone would have it.")
         .def_ro("weight", &Contribution::weight, "Of the technique, by multiple importance sampling.")
         .def_ro("borrowed", &Contribution::borrowed, "It was found by another pixel's path, and shared.")
+        .def_ro("from_light", &Contribution::from_light, "It was found by a path from a light.")
         .def_ro("pdf", &Contribution::pdf,
                 "Of the last direction by this technique, in solid angle; 0 where it has no density.")
         .def_ro("other_pdf", &Contribution::other_pdf, "Of the same direction by the other technique.");
@@ -113,6 +114,8 @@ void bind_replay(nb::module_& m) {
 
     nb::class_<PathRecord>(m, "PathRecord", "A sample's path, vertex by vertex.")
         .def_ro("vertices", &PathRecord::vertices)
+        .def_ro("from_lights", &PathRecord::from_lights,
+                "Contributions that paths from lights brought to this sample.")
         .def_ro("borrowed", &PathRecord::borrowed,
                 "Contributions that other pixels' paths found and shared with this one.")
         .def_prop_ro(

@@ -235,6 +235,9 @@ void bind_renderer(nb::module_& m) {
         .def_prop_ro(
             "sharing", [](Renderer& r) { return r.algorithm().sharing(); },
             "How many pixels share what their paths find, see the function `sharing`.")
+        .def_prop_ro(
+            "light_paths", [](Renderer& r) { return r.algorithm().light_paths(); },
+            "How many paths from lights belong to a sample of every pixel; 0: none.")
         .def_prop_ro("error", &Renderer::error,
                      "Error of the film as the running or last render last saw it (see film_error); infinite "
                      "where it cannot\n"

@@ -213,7 +213,29 @@ void bind_camera(nb::module_& m) {
             nb::arg("film"), nb::arg("lens"),
             "film: float32 (n, 2), pixels from the top left corner. lens: float32 (n, 2) in [0, 1). Returns "
             "origins and unit\n"
-            "directions, (n, 3) each.");
+            "directions, (n, 3) each.")
+        .def(
+            "films_of",
+            [](const Camera& camera, const Vectors3& points, const Vectors2& lens) {
+                require_same_length(points.shape(0), lens.shape(0), "points and lens");
+                auto film = new_array<Out<float, nb::shape<-1, 2>>>({points.shape(0), 2});
+                auto per_solid_angle = new_array<Out<float, nb::shape<-1>>>({points.shape(0)});
+                for (size_t i = 0; i < points.shape(0); ++i) {
+                    const auto view = camera.view_of(vec3_at(points, i), vec2_at(lens, i));
+                    film.data()[2 * i] = view ? view->film.x : NAN;
+                    film.data()[2 * i + 1] = view ? view->film.y : NAN;
+                    per_solid_angle.data()[i] = view ? camera.film_per_solid_angle(view->direction) : NAN;
+                }
+                return std::pair{film, per_solid_angle};
+            },
+            nb::arg("points"), nb::arg("lens"),
+            "The inverse of `rays`. points: float32 (n, 3). lens: float32 (n, 2) in [0, 1). Returns where "
+            "rays from "
+            "there that meet the\n"
+            "points come from the film, (n, 2), in pixels and maybe outside of the image, and how many "
+            "pixels of film "
+            "see a steradian\n"
+            "there, (n,). NaN behind a perspective camera.");
     m.def("auto_focus", &auto_focus, nb::arg("scene"), nb::arg("camera"),
           nb::call_guard<nb::gil_scoped_release>(),
           "Geometric mean of the hit distances of pixel-centre rays over the middle quarter (w/4 x h/4) of "
@@ -233,6 +255,19 @@ void bind_camera(nb::module_& m) {
         },
         nb::arg("filter"), nb::arg("u"),
         "u: float32 (n, 2) in [0, 1) -> offsets from the pixel's centre drawn from the filter, (n, 2).");
+    m.def(
+        "filter_density",
+        [](const std::string& name, const Vectors2& offsets) {
+            const Filter filter(static_cast<Filter::Kind>(index_of(Filter::names, name, "filter")));
+            auto out = new_array<Out<float, nb::shape<-1>>>({offsets.shape(0)});
+            for (size_t i = 0; i < offsets.shape(0); ++i) {
+                out.data()[i] = filter.density(vec2_at(offsets, i));
+            }
+            return out;
+        },
+        nb::arg("filter"), nb::arg("offsets"),
+        "offsets: float32 (n, 2) from the pixel's centre, in pixels -> their density per pixel of area, "
+        "(n,).");
 }
 
 }  // namespace

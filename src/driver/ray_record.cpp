@@ -1,6 +1,8 @@
 #include "driver/ray_record.h"
 
 #include <atomic>
+#include <deque>
+#include <mutex>
 
 #include "driver/sample_batch.h"
 #include "driver/tiles.h"
@@ -25,8 +27,20 @@ RayRecord::RayRecord(const Scene& scene, const Sensor& sensor, const Algorithm& 
     : scene_(scene), width_(sensor.camera.width()), height_(sensor.camera.height()) {
     const Tiles tiles(width_, height_);
     tiles_.resize(tiles.count());
-    TileWorkers(thread_count(threads)).for_each(tiles, [&](uint32_t index, const Tile& tile) {
-        SampleBatch<Recorder> batch(scene, sensor, algorithm);
+    TileWorkers workers(thread_count(threads));
+    LightImage light(scene, sensor, algorithm);
+    std::mutex mutex;
+    std::deque<Recorder> of_light;  // which stay where they are
+    light.trace(workers, 0, samples, false, [&] {
+        const std::lock_guard lock(mutex);
+        return &of_light.emplace_back();
+    });
+    for (size_t i = 0; i < of_light.size(); ++i) {
+        auto& rays = tiles_[i % tiles.count()];
+        rays.insert(rays.end(), of_light[i].rays.begin(), of_light[i].rays.end());
+    }
+    workers.for_each(tiles, [&](uint32_t index, const Tile& tile) {
+        SampleBatch<Recorder> batch(scene, sensor, algorithm, light);
         const auto visit = [&](const auto& sample) {
             const auto& rays = sample.listener.rays;
             tiles_[index].insert(tiles_[index].end(), rays.begin(), rays.end());

@@ -34,6 +34,7 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, std::unique_ptr<Alg
       films_(settings.films),
       film_(films_ ? films_->take(camera.width(), camera.height(), threads_)
                    : Film(camera.width(), camera.height())),
+      light_(scene_, sensor_, *algorithm_),
       tiles_(camera.width(), camera.height()),
       tile_mutexes_(tiles_.count()) {}
 
@@ -71,7 +72,10 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     while (is_ready && done < samples && !stop_) {
         const Clock::time_point pass_start = Clock::now();
         const bool may_stop = done > 0;
+        const uint64_t before = done;
+        if (algorithm_->light_paths() > 0) pass = std::min(pass, LightImage::MOST_SAMPLES);
         done += std::min(pass, samples - done);
+        if (!trace_light(workers, before, done)) break;
         workers.for_each(tiles_, [&](uint32_t index, const Tile&) {
             render_tile(index, 1, done);
             if (may_stop && seconds_since(start) > time_limit) stop_ = true;
@@ -94,10 +98,9 @@ bool Renderer::render(uint64_t samples, double time_limit) {
 
 bool Renderer::render_coarse(uint32_t stride) {
     const Clock::time_point start = Clock::now();
-    if (prepare(stop_)) {
-        TileWorkers(threads_).for_each(tiles_,
-                                       [&](uint32_t index, const Tile&) { render_tile(index, stride, 1); });
-    }
+    TileWorkers workers(threads_);
+    if (prepare(stop_) && trace_light(workers, 0, 1))
+        workers.for_each(tiles_, [&](uint32_t index, const Tile&) { render_tile(index, stride, 1); });
     seconds_ = seconds_ + seconds_since(start);
     return !stop_.exchange(false);
 }
@@ -121,16 +124,24 @@ bool Renderer::render_until(double error_bound, double time_limit) {
         const std::vector<TileGoal> goals = next_goals(errors, error_bound);
         complete = goals.empty();
         if (complete) break;
-        workers.in_order(goals.size(), [&](uint32_t index) {
-            const TileGoal& goal = goals[index];
-            // In pieces, so that the tile can be read and the clock is looked at meanwhile.
-            for (uint64_t samples = errors[goal.tile].fewest; samples < goal.samples && !stop_;) {
-                samples = std::min(samples + PixelGroups::BLOCK, goal.samples);
-                render_tile(goal.tile, 1, samples);
+        // In pieces, so that tiles can be read, the clock is looked at and only some samples' light is kept meanwhile.
+        const auto fewest = [&](const TileGoal& goal) { return errors[goal.tile].fewest; };
+        uint64_t most = 0, done = std::numeric_limits<uint64_t>::max();
+        for (const TileGoal& goal : goals) {
+            most = std::max(most, goal.samples);
+            done = std::min(done, fewest(goal));
+        }
+        while (done < most && !stop_) {
+            const uint64_t before = std::exchange(done, std::min(done + LightImage::MOST_SAMPLES, most));
+            if (!trace_light(workers, before, done)) break;
+            workers.in_order(goals.size(), [&](uint32_t index) {
+                const TileGoal& goal = goals[index];
+                if (stop_ || goal.samples <= before || fewest(goal) >= done) return;
+                render_tile(goal.tile, 1, std::min(done, goal.samples));
                 if (seconds_since(start) > time_limit) stop_ = true;
-            }
-        });
-        seconds_ = seconds_before + seconds_since(start);
+            });
+            seconds_ = seconds_before + seconds_since(start);
+        }
     }
     seconds_ = seconds_before + seconds_since(start);
     stop_ = false;
@@ -168,6 +179,13 @@ std::vector<TileError> Renderer::look(TileWorkers& workers) {
     return errors;
 }
 
+bool Renderer::trace_light(TileWorkers& workers, uint64_t begin, uint64_t end) {
+    const uint64_t rays_before = light_.rays();
+    const bool is_complete = light_.trace(workers, first_sample_ + begin, first_sample_ + end, stop_);
+    rays_ += light_.rays() - rays_before;
+    return is_complete;
+}
+
 void Renderer::render_tile(uint32_t index, uint32_t stride, uint64_t samples) {
     const std::lock_guard lock(tile_mutexes_[index]);
     if (contributions_.empty()) {
@@ -179,7 +197,7 @@ void Renderer::render_tile(uint32_t index, uint32_t stride, uint64_t samples) {
 
 template <class Listener>
 void Renderer::render_tile(const Tile& tile, uint32_t stride, uint64_t samples) {
-    SampleBatch<Listener> batch(scene_, sensor_, *algorithm_, &stop_);
+    SampleBatch<Listener> batch(scene_, sensor_, *algorithm_, light_, &stop_);
     uint64_t taken = 0;
     const auto visit = [&](const auto& sample) {
         ++taken;

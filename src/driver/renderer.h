@@ -11,8 +11,7 @@
 #include "driver/contributions.h"
 #include "driver/film_error.h"
 #include "driver/films.h"
-#include "driver/sensor.h"
-#include "driver/tiles.h"
+#include "driver/light_image.h"
 #include "gi/film.h"
 
 namespace etendue {
@@ -114,6 +113,8 @@ class Renderer {
     bool prepare(const std::atomic<bool>& cancelled);
     /// The tiles' errors, and the film's for others to see.
     std::vector<TileError> look(TileWorkers& workers);
+    /// Before samples [begin, end) of pixels, counted from those of the film. False where it was cancelled.
+    bool trace_light(TileWorkers& workers, uint64_t begin, uint64_t end);
     void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
     template <class Listener>
     void render_tile(const Tile& tile, uint32_t stride, uint64_t samples);
@@ -128,6 +129,7 @@ class Renderer {
     int threads_;
     std::shared_ptr<Films> films_;
     Film film_;
+    LightImage light_;  // of the samples that tiles are rendered by
     Tiles tiles_;
     mutable std::vector<std::mutex> tile_mutexes_;  // held by who renders a tile, or reads it
     std::vector<ContributionSums> contributions_;

@@ -23,8 +23,8 @@ class Recorder : public Observer {
         if (survived) throughput_ /= 1 - q;
     }
     void contribution(const Contribution& found) override {
-        if (found.borrowed) {
-            path.borrowed.push_back(found);
+        if (found.borrowed || found.from_light) {
+            (found.borrowed ? path.borrowed : path.from_lights).push_back(found);
             return;
         }
         // It is told late where it had to be shared first. Light is sampled from one vertex before it.
@@ -47,7 +47,10 @@ PathRecord replay(const Scene& scene, const Sensor& sensor, const Algorithm& alg
                   uint32_t y, uint64_t index) {
     const FlushDenormals flush;  // as while rendering
     PathRecord record;
-    SampleBatch<Recorder> batch(scene, sensor, algorithm);
+    TileWorkers workers(1);
+    LightImage light(scene, sensor, algorithm);
+    light.trace(workers, index, index + 1, false);
+    SampleBatch<Recorder> batch(scene, sensor, algorithm, light);
     const Tiles tiles(sensor.camera.width(), sensor.camera.height());
     batch.add(tiles[tiles.index_of(x, y)], x, y, index);
     batch.finish([&](const auto& sample) {

@@ -32,8 +32,9 @@ struct PathVertex {
 
 struct PathRecord {
     std::vector<PathVertex> vertices;
-    std::vector<Contribution> borrowed;  // that other pixels' paths found and shared
-    vec3 radiance{0};                    // the estimate
+    std::vector<Contribution> borrowed;     // that other pixels' paths found and shared
+    std::vector<Contribution> from_lights;  // that paths from lights brought
+    vec3 radiance{0};                       // the estimate
 };
 
 /// The same path as sample `index` of that pixel in any render with these settings.

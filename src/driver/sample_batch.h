@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "algorithms/algorithm.h"
+#include "driver/light_image.h"
 #include "driver/pixel_groups.h"
-#include "driver/sensor.h"
 
 namespace etendue {
 
@@ -27,12 +27,13 @@ class SampleBatch : public SampleQueue {
     /// As many as are estimated between two looks at them: enough for lanes to be full most of the time.
     static constexpr size_t CAPACITY = 4096;
 
-    /// Once `stop` is true, where there is one, no more samples are given out.
-    SampleBatch(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm,
+    /// `light`: of all samples that will be asked for. Once `stop` is true, where there is one, no more samples are given out.
+    SampleBatch(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm, const LightImage& light,
                 const std::atomic<bool>* stop = nullptr)
         : scene_(scene),
           sensor_(sensor),
           algorithm_(algorithm),
+          light_(light),
           numbers_(sensor.make_sampler()),
           stop_(stop) {}
 
@@ -59,7 +60,9 @@ class SampleBatch : public SampleQueue {
     void finish(const auto& visit) {
         rays_ += algorithm_.estimate(scene_, *this);
         for (size_t i = 0; i < given_; ++i) {
-            if (samples_[i].is_wanted) visit(samples_[i]);
+            if (!samples_[i].is_wanted) continue;
+            if (!light_.is_empty()) add_light(samples_[i]);
+            visit(samples_[i]);
         }
         samples_.clear();
         given_ = 0;
@@ -90,6 +93,12 @@ class SampleBatch : public SampleQueue {
             shares = true;
         }
     }
+    void add_light(Sample& sample) const {
+        for (const Contribution& found : light_.at(sample.x, sample.y, sample.index)) {
+            sample.radiance += found.unweighted * found.weight;
+            if constexpr (std::derived_from<Listener, Observer>) sample.listener.contribution(found);
+        }
+    }
     /// Of the next samples, as many as there are lanes.
     void make_rays() {
         LaneSampler numbers;
@@ -110,6 +119,7 @@ class SampleBatch : public SampleQueue {
     const Scene& scene_;
     const Sensor& sensor_;
     const Algorithm& algorithm_;
+    const LightImage& light_;
     Sampler numbers_;
     const std::atomic<bool>* stop_;
     std::vector<Sample> samples_;

@@ -64,8 +64,13 @@ TechniqueFilm::TechniqueFilm(const Scene& scene, const Sensor& sensor, const Alg
 bool TechniqueFilm::render(uint64_t samples) {
     samples_done_ = 0;
     TileWorkers workers(threads_);
+    LightImage light(scene_, sensor_, algorithm_);
+    if (!light.trace(workers, samples_, samples_ + samples, stop_)) {
+        stop_ = false;
+        return false;
+    }
     workers.for_each(Tiles(width(), height()), [&](uint32_t, const Tile& tile) {
-        SampleBatch<TechniqueObserver> batch(scene_, sensor_, algorithm_, &stop_);
+        SampleBatch<TechniqueObserver> batch(scene_, sensor_, algorithm_, light, &stop_);
         TechniqueSums sums(max_edges_);
         const auto visit = [&](const auto& sample) {
             ++samples_done_;

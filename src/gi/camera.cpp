@@ -32,6 +32,25 @@ std::optional<vec2> Camera::film_of(const vec3& point) const {
     return vec2(size.x * (phi / (2 * PI) + 0.5f), size.y * theta / PI);
 }
 
+std::optional<Camera::View> Camera::view_of(const vec3& point, const vec2& u_lens) const {
+    View view{{}, settings_.pos, {}, 0};
+    std::optional<vec2> film;
+    if (settings_.lens_radius > 0 && settings_.perspective) {
+        view.origin += lens_offset(u_lens);
+        const float ahead = glm::dot(point - view.origin, forward_);
+        if (!(ahead > 0)) return std::nullopt;
+        // Where the pinhole sees the point in focus on the way.
+        film = film_of(view.origin + settings_.focal_depth / ahead * (point - view.origin));
+    } else {
+        film = film_of(point);
+    }
+    if (!film) return std::nullopt;
+    view.film = *film;
+    view.distance = glm::length(point - view.origin);
+    view.direction = (point - view.origin) / view.distance;
+    return view;
+}
+
 float Camera::depth(const vec3& point) const {
     const vec3 away = point - settings_.pos;
     return settings_.perspective ? glm::dot(away, forward_) : glm::length(away);

@@ -29,9 +29,7 @@ class Camera {
         const RayOf<F> through_centre = pinhole_ray(film);
         if (settings_.lens_radius <= 0 || !settings_.perspective) return through_centre;
         // All rays of a film point meet in the plane in focus, at focal_depth along dir.
-        const V2 lens = uniform_disc(u_lens);
-        const Vec3<F> offset =
-            settings_.lens_radius * lens.x * Vec3<F>(right_) + settings_.lens_radius * lens.y * Vec3<F>(up_);
+        const Vec3<F> offset = lens_offset(u_lens);
         const F depth = settings_.focal_depth / dot(through_centre.direction, Vec3<F>(forward_));
         return {through_centre.origin + offset, normalize(through_centre.direction * depth - offset)};
     }
@@ -56,6 +54,28 @@ class Camera {
     /// Where that pinhole sees a point: the inverse of the above. Empty behind a perspective camera; may be
     /// outside of the film.
     std::optional<vec2> film_of(const vec3& point) const;
+    /// A ray of the camera that meets a point.
+    struct View {
+        vec2 film;  // which may be outside of it
+        vec3 origin;
+        vec3 direction;  // unit
+        float distance;
+    };
+    /// That from a uniform point of the lens; empty behind a perspective camera.
+    std::optional<View> view_of(const vec3& point, const vec2& u_lens) const;
+    /// How much film, in pixels, sees a solid angle around the direction of a ray from one point of the lens.
+    template <class V, class F = NumberOf<V>>
+    F film_per_solid_angle(const V& direction) const {
+        const float w = static_cast<float>(width_), h = static_cast<float>(height_);
+        if (!settings_.perspective) {
+            // d omega = sin theta d theta d phi.
+            const F cos_theta = dot(direction, V(up_));
+            return w * h / (2 * PI * PI) / max(safe_sqrt(1 - cos_theta * cos_theta), F(1e-6f));
+        }
+        // d omega = cos dA / distance^2 in the plane at distance 1 along dir, where a pixel has the side 2 tan(fov / 2) / h.
+        const F cos = dot(direction, V(forward_));
+        return sqr(h / (2 * tan_half_fov_)) / (cos * cos * cos);
+    }
     /// How far away a point is: along dir, as focal_depth counts; of a panorama, straight from pos.
     float depth(const vec3& point) const;
 
@@ -64,6 +84,13 @@ class Camera {
     uint32_t height() const { return height_; }
 
   private:
+    template <class V2, class F = NumberOf<V2>>
+    Vec3<F> lens_offset(const V2& u_lens) const {
+        const V2 lens = uniform_disc(u_lens);
+        return settings_.lens_radius * lens.x * Vec3<F>(right_) +
+               settings_.lens_radius * lens.y * Vec3<F>(up_);
+    }
+
     CameraSettings settings_;
     uint32_t width_, height_;
     vec3 forward_, right_, up_;

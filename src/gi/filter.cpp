@@ -29,4 +29,18 @@ Filter::Filter(Kind kind) : kind_(kind) {
     }
 }
 
+float Filter::density_1d(float offset) const {
+    if (kind_ == Kind::box) return offset >= -0.5f && offset < 0.5f ? 1.f : 0.f;
+    const float distance = std::abs(offset);
+    if (distance >= radius()) return 0;
+    // The cell that reaches from distances_[i] inwards to distances_[i + 1].
+    const auto next = std::ranges::lower_bound(distances_, distance, std::greater_equal());
+    const auto i = std::clamp<ptrdiff_t>(next - distances_.begin(), 1, CELLS) - 1;
+    const float width = distances_[i] - distances_[i + 1];
+    const float cell = static_cast<float>(i) + (distances_[i] - distance) / width;
+    // The derivative of the share that is left beyond, (cell / CELLS)^4 / 2.
+    const float x = cell / CELLS;
+    return 2 * x * x * x / (CELLS * width);
+}
+
 }  // namespace etendue

@@ -23,7 +23,14 @@ class Filter {
         return {sample_1d(u.x), sample_1d(u.y)};
     }
 
+    /// The density of `sample`, for an offset from a pixel's centre.
+    float density(const vec2& offset) const { return density_1d(offset.x) * density_1d(offset.y); }
+    /// Offsets are no longer than this along either axis.
+    float radius() const { return kind_ == Kind::box ? 0.5f : distances_[0]; }
+
   private:
+    float density_1d(float offset) const;
+
     static constexpr int CELLS = 256;
 
     template <class F>

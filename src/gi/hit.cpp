@@ -42,7 +42,13 @@ SurfaceHit::SurfaceHit(const Ray& ray, float distance, const Mesh& mesh, uint32_
     front = glm::dot(point.normal, wo) > 0;
     if (!front) point.normal = -point.normal;
     const bool is_flat = mesh.facets[triangle].smooth == 0 && !material.normal_texture;
-    frame = Frame(is_flat ? point.normal : shading_normal());
+    if (is_flat) {
+        frame = Frame(point.normal);
+    } else {
+        const ClearNormal<vec3> normal = shading_normal();
+        frame = Frame(normal.n);
+        is_bent = normal.is_bent;
+    }
     wo_local = frame.to_local(wo);
     surface_.albedo = material.albedo;
     surface_.ior = material.ior;
@@ -57,7 +63,7 @@ void SurfaceHit::read_colour() const {
     colour_texture_ = nullptr;
 }
 
-vec3 SurfaceHit::shading_normal() const {
+ClearNormal<vec3> SurfaceHit::shading_normal() const {
     const vec2& b = barycentrics;
     // As the mesh has it, on the front.
     const vec3 geometric = front ? point.normal : -point.normal;
@@ -69,7 +75,7 @@ vec3 SurfaceHit::shading_normal() const {
         if (glm::dot(n, geometric) < 0) n = -n;
     }
     if (material->normal_texture) n = mapped_normal(*material, *mesh, triangle, b, n);
-    return clear_of_surface(front ? n : -n, wo, point.normal);
+    return {front ? n : -n, wo, point.normal};
 }
 
 vec3 SurfaceHit::Le() const {

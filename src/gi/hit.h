@@ -15,13 +15,26 @@ class Light;
 /// just so far that the mirrored direction clears the surface: no black rims, and wo.z > 0. All unit, and `geometric` on
 /// the side of wo.
 template <class V, class F = NumberOf<V>>
-V clear_of_surface(const V& normal, const V& wo, const V& geometric) {
-    const V mirror = mirrored(wo, normal);
-    const F above = dot(mirror, geometric);
-    const F least = min(F(0.01f), 0.9f * dot(wo, geometric));
-    const Mask<F> bends = above < least;
-    if (!any(bends)) return normal;
-    return select(bends, normalize(wo + normalize(mirror + (least - above) * geometric)), normal);
+struct ClearNormal {
+    ClearNormal(const V& normal, const V& wo, const V& geometric) : n(normal) {
+        const V mirror = mirrored(wo, normal);
+        const F above = dot(mirror, geometric);
+        const F least = min(F(0.01f), 0.9f * dot(wo, geometric));
+        is_bent = above < least;
+        if (!any(is_bent)) return;
+        n = select(is_bent, normalize(wo + normalize(mirror + (least - above) * geometric)), normal);
+    }
+
+    V n;
+    Mask<F> is_bent;
+};
+
+/// Whether light that a delta BSDF sends from wi to wo would take the same way back: the shading normal is bent for neither
+/// of them, neither for wo, where it `is_bent` or not, nor for wi. `normal` and `geometric` on the side of wo.
+template <class V, class F = NumberOf<V>>
+Mask<F> is_reversible(const Mask<F>& is_bent, const V& normal, const V& geometric, const V& wi) {
+    const F side = select(dot(wi, geometric) > 0, F(1), F(-1));
+    return !is_bent && !ClearNormal<V>(side * normal, wi, side * geometric).is_bent;
 }
 
 /// The normal mapped by a material's texture around the unit normal `normal` of a triangle's front.
@@ -40,6 +53,7 @@ struct SurfaceHit {
     const Material* material = nullptr;
     const Light* light = nullptr;
     vec3 wo_local{0, 0, 1};  // wo in `frame`
+    bool is_bent = false;    // the shading normal, see ClearNormal
     const Mesh* mesh = nullptr;
     uint32_t triangle = 0;
     vec2 barycentrics{0};  // (b1, b2) of the hit in the triangle
@@ -81,7 +95,7 @@ struct SurfaceHit {
 
   private:
     /// On the side of wo.
-    vec3 shading_normal() const;
+    ClearNormal<vec3> shading_normal() const;
     void read_colour() const;
 
     // The texture is asked for the colour when the hit is made, and read when the BSDF is first needed: by then, after

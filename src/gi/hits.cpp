@@ -66,7 +66,7 @@ ETENDUE_LANES_FLATTEN SurfaceHits::SurfaceHits(const LaneRays& rays, const LaneM
     wo_local = frame.to_local(wo);
 }
 
-LaneVec3 SurfaceHits::shading_normals(const LaneMask& smooth, const LaneMask& mapped) const {
+LaneVec3 SurfaceHits::shading_normals(const LaneMask& smooth, const LaneMask& mapped) {
     // As the mesh has it, on the front.
     const LaneVec3 geometric = select(front, point.normal, -point.normal);
     LaneVec3 n = geometric;
@@ -91,7 +91,9 @@ LaneVec3 SurfaceHits::shading_normals(const LaneMask& smooth, const LaneMask& ma
         });
         n = select(mapped, normals.lanes(), n);
     }
-    return select(smooth || mapped, clear_of_surface(select(front, n, -n), wo, point.normal), point.normal);
+    const ClearNormal<LaneVec3> normal(select(front, n, -n), wo, point.normal);
+    is_bent = (smooth || mapped) && normal.is_bent;
+    return select(smooth || mapped, normal.n, point.normal);
 }
 
 void SurfaceHits::read_colours() {

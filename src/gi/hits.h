@@ -52,6 +52,7 @@ struct SurfaceHits {
     LaneVec3 wo;
     SurfacePointOf<Lanes> point;  // its normal is geometric and on the side of wo
     FrameOf<Lanes> frame;         // around the shading normal, on the side of wo
+    LaneMask is_bent{false};      // that normal, see ClearNormal
     LaneVec3 wo_local;
     FoundHits found;
 
@@ -76,7 +77,7 @@ struct SurfaceHits {
     SurfaceHit seen_by_light(int lane) const;
 
   private:
-    LaneVec3 shading_normals(const LaneMask& smooth, const LaneMask& mapped) const;
+    LaneVec3 shading_normals(const LaneMask& smooth, const LaneMask& mapped);
 
     SurfaceOf<Lanes> surface_;
     Lanes bsdf_;  // kinds

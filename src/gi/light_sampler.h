@@ -14,6 +14,15 @@ namespace etendue {
 struct alignas(64) LightFactors {
     float triangles_share;  // probability of choosing a triangle rather than another light; in (0, 1]
     LightTree::Factors tree;
+
+    /// Of triangles no more than what the tree knows.
+    static LightFactors even(float triangles_share) {
+        std::array<float, LightTree::WIDTH> ones;
+        ones.fill(1);
+        LightFactors out{triangles_share, {LightTree::SlotFactors(ones), {}}};
+        out.tree.below.fill(out.tree.root);
+        return out;
+    }
 };
 
 class LightSampler {

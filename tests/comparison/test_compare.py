@@ -124,6 +124,7 @@ class TestResults:
             "light_choice": ["learned", None],
             "mis": ["none", None],
             "path_reuse": [True, None],
+            "light_tracing": [True, None],
         }
 
     def test_images_are_those_of_ordinary_renders(self, lit: Path) -> None:

@@ -37,7 +37,7 @@ def test_a_replay_tells_where_the_radiance_is_from(estimator: Estimator) -> None
         assert not any(c.borrowed for c in found)
         assert all(c.borrowed for c in path.borrowed)
         shared += len(path.borrowed)
-        found += path.borrowed
+        found += path.borrowed + path.from_lights
         total = sum((np.multiply(c.unweighted, c.weight) for c in found), np.zeros(3))
         np.testing.assert_allclose(total, path.radiance, rtol=1e-5)
         throughput = np.ones(3)

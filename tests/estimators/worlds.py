@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import ChainMap
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -82,22 +83,24 @@ class Estimator:
 
 
 def estimators(roulette: tuple[float, ...] = (0, 1)) -> Iterator[Estimator]:
-    """Every algorithm that pictures light transport, with each of its choices and roulette thresholds.
+    """Every algorithm that pictures light transport, with each of its choices and roulette thresholds, and its
+    switches all off or all on.
 
     With a threshold of 1 roulette acts at every bounce but the first.
     """
     for info in _core.algorithms():
         if info.longest_path == 0:
             continue
-        axes: list[list[tuple[str, object]]] = [
-            [(p.name, choice) for choice in (p.choices if p.kind == "choice" else (False, True))]
-            for p in info.parameters
-            if p.kind in ("choice", "bool")
+        axes: list[list[dict[str, object]]] = [
+            [{p.name: choice} for choice in p.choices] for p in info.parameters if p.kind == "choice"
         ]
+        switches = [p.name for p in info.parameters if p.kind == "bool"]
+        if switches:
+            axes.append([dict.fromkeys(switches, False), dict.fromkeys(switches, True)])
         if any(p.name == "rr_threshold" for p in info.parameters):
-            axes.append([("rr_threshold", float(threshold)) for threshold in roulette])
+            axes.append([{"rr_threshold": float(threshold)} for threshold in roulette])
         for settings in itertools.product(*axes):
-            yield Estimator(info.name, dict(settings), info.longest_path)
+            yield Estimator(info.name, dict(ChainMap(*settings)), info.longest_path)
 
 
 def full_transport(roulette: tuple[float, ...] = (0, 1)) -> list[Estimator]:

@@ -37,6 +37,7 @@ LIGHTS = "tests/statistics/test_light_sampling.py"
 CHOICE = "tests/statistics/test_light_choice.py"
 GUIDE = "tests/estimators/test_light_guide.py"
 REUSE = ("tests/estimators/test_path_reuse.py", "-k", "mean")
+TRACING = ("tests/estimators/test_light_tracing.py", "-k", "mean or spreads")
 SAMPLER = "tests/statistics/test_sampler.py"
 
 
@@ -65,6 +66,55 @@ MUTANTS = (
         "choice_pmfs(context, paths, hits, could_be_sampled) * light.pdf",
         "light.pdf",
         (ANALYTIC, "-k", "two_lamps"),
+    ),
+    Mutant(
+        "light traced without the angle at which the film sees it",
+        "algorithms/light_tracing.h",
+        "abs(dot(ray_direction, normal) / dot(wi, normal))",
+        "abs(dot(wi, normal) / dot(wi, normal))",
+        TRACING,
+    ),
+    Mutant(
+        "light traced as if shading normals kept its etendue",
+        "algorithms/light_tracing.cpp",
+        "bounce.weight * bounce.eta2 * cos_ratio(bounce.wi) / cos_ratio(hit.wo)",
+        "bounce.weight * bounce.eta2",
+        TRACING,
+    ),
+    Mutant(
+        "light traced as if refraction changed its power",
+        "algorithms/light_tracing.cpp",
+        "bounce.weight * bounce.eta2 *",
+        "bounce.weight *",
+        TRACING,
+    ),
+    Mutant(
+        "bent shading normals taken for the same from both ends",
+        "gi/hit.h",
+        "!is_bent && !ClearNormal<V>(side * normal, wi, side * geometric).is_bent",
+        "Mask<F>(true)",
+        TRACING,
+    ),
+    Mutant(
+        "light traced in addition to what paths from the camera find",
+        "algorithms/pathtracer.cpp",
+        "select(could_be_traced, weight, found.weight)",
+        "found.weight",
+        TRACING,
+    ),
+    Mutant(
+        "light traced through some places more often than weights know",
+        "algorithms/light_tracing.cpp",
+        "light->pmf * sample.pdf * area_densities_[place] / cos_g",
+        "light->pmf * sample.pdf / static_cast<float>(choice_.total()) / cos_g",
+        TRACING,
+    ),
+    Mutant(
+        "light traced that lands on one pixel of those whose filter sees it",
+        "gi/filter.cpp",
+        "2 * x * x * x / (CELLS * width)",
+        "3 * x * x * x / (CELLS * width)",
+        ("tests/statistics/test_filter.py", "-k", "density"),
     ),
     Mutant(
         "paths shared with pixels that do not see them",

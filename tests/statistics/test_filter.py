@@ -56,3 +56,24 @@ def test_quantiles(name: str) -> None:
     assert np.abs(cumulative(offsets[:, 0]) - u).max() < 1e-3
     assert offsets[0, 0] == pytest.approx(-radius, abs=1e-6)
     np.testing.assert_allclose(offsets[1:-1, 0], -offsets[1:-1, 0][::-1], atol=1e-4)
+
+
+@pytest.mark.parametrize("name", _core.filters())
+def test_the_density_is_that_of_the_offsets(name: str) -> None:
+    """Also between the cells of the table that offsets are drawn from, which the window itself is not."""
+    n, cells, steps = 4_000_000, 48, 64
+    radius = FILTERS[name][1]
+    offsets = _core.filter_offsets(name, np.random.default_rng(2).random((n, 2), dtype=np.float32))
+    edges = np.linspace(-radius, radius, cells + 1)
+    at = (np.arange(cells * steps) + 0.5) / (cells * steps) * 2 * radius - radius
+    along_x = np.stack([at, np.zeros_like(at)], axis=1).astype(np.float32)
+    density = _core.filter_density(name, along_x).reshape(cells, steps).mean(1)
+    probability = density / density.sum()
+    for axis in range(2):
+        assert chi_square(np.histogram(offsets[:, axis], edges)[0], probability * n).p > sidak(4)
+    # Of two dimensions it is the product, and its integral is 1.
+    grid = np.stack(np.meshgrid(at[::8], at[::8]), axis=-1).reshape(-1, 2).astype(np.float32)
+    area = (2 * radius / len(at[::8])) ** 2
+    assert _core.filter_density(name, grid).sum() * area == pytest.approx(1, abs=2e-3)
+    outside = np.array([[radius + 1e-3, 0], [0, -radius - 1e-3]], np.float32)
+    assert (_core.filter_density(name, outside) == 0).all()

@@ -1,4 +1,4 @@
-// How many pixels had best share their paths in a scene: found by a few paths of its own, before a render.
+// How noisy a scene is, and how many pixels had best share their paths: found by a few paths of its own, before a render.
 //
 // Some groups of pixels are estimated with and without sharing, which tells how much variance and how many rays it makes
 // of theirs. With n pixels the variance is about  a + b / n:  a of light that pixels see directly, and of what they see
@@ -16,8 +16,14 @@ struct ReuseTrial {
 };
 using TryReuse = std::function<ReuseTrial(SampleQueue& queue)>;
 
-/// A power of two up to PathReuse::MOST_PIXELS; 1 where sharing does not pay. Always the same for a scene and a camera. Empty
-/// where it was cut short.
-std::optional<uint32_t> best_sharing(const Preparation& preparation, const TryReuse& try_reuse);
+/// What it tells.
+struct Pilot {
+    uint32_t sharing;         // a power of two up to PathReuse::MOST_PIXELS; 1 where sharing does not pay
+    float luminance;          // of the picture, in the mean
+    float relative_variance;  // of a sample of a pixel, shared like that, without the noisiest pixels
+    float rays;               // a sample
+};
+/// Always the same for a scene and a camera. Without sharing where `may_share` is false. Empty where it was cut short.
+std::optional<Pilot> fly(const Preparation& preparation, bool may_share, const TryReuse& try_reuse);
 
 }  // namespace etendue

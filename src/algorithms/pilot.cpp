@@ -1,4 +1,4 @@
-#include "algorithms/reuse_pilot.h"
+#include "algorithms/pilot.h"
 
 #include <numeric>
 
@@ -97,7 +97,7 @@ Variances variances_of(const std::vector<PixelMeans>& pixels) {
 
 }  // namespace
 
-std::optional<uint32_t> best_sharing(const Preparation& preparation, const TryReuse& try_reuse) {
+std::optional<Pilot> fly(const Preparation& preparation, bool may_share, const TryReuse& try_reuse) {
     std::vector<ReuseTrial> trials(GROUPS);
     const bool complete = preparation.for_each(GROUPS, [&](uint32_t group) {
         GroupQueue queue(preparation.camera, group);
@@ -115,16 +115,24 @@ std::optional<uint32_t> best_sharing(const Preparation& preparation, const TryRe
     const Variances variances = variances_of(pixels);
     const float b = std::max(variances.alone - variances.shared, 0.f) / (1 - 1.f / PIXELS);
     const float a = variances.alone - b;
+    const auto variance = [&](uint32_t n) { return a + b / static_cast<float>(n); };
+    // Over that of the paths themselves.
+    const auto rays_with = [&](uint32_t n) {
+        return static_cast<float>(n - 1) / (PIXELS - 1) * rays_of_sharing / rays;
+    };
     const auto effort = [&](uint32_t n) {
-        const float time = 1 + (n > 1 ? OVERHEAD : 0) +
-                           RAY * static_cast<float>(n - 1) / (PIXELS - 1) * rays_of_sharing / rays;
-        return (a + b / static_cast<float>(n)) * time;
+        return variance(n) * (1 + (n > 1 ? OVERHEAD : 0) + RAY * rays_with(n));
     };
     uint32_t best = 1;
-    for (uint32_t n = 2; n <= PathReuse::MOST_PIXELS; n *= 2) {
+    for (uint32_t n = 2; may_share && n <= PathReuse::MOST_PIXELS; n *= 2) {
         if (effort(n) < effort(best)) best = n;
     }
-    return best;
+    vec3 mean(0);
+    for (const PixelMeans& pixel : pixels) mean += pixel.mean() / static_cast<float>(pixels.size());
+    // The sums are of squared differences of two means of 16 samples, over three channels.
+    const float per_sample = SAMPLES / 2.f / 3 / static_cast<float>(pixels.size());
+    return Pilot{best, luminance(mean), variance(best) * per_sample,
+                 rays / (GROUPS * PIXELS * BLOCKS * SAMPLES) * (1 + rays_with(best))};
 }
 
 }  // namespace etendue
