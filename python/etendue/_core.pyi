@@ -663,7 +663,8 @@ class Contribution:
     @property
     def pdf(self) -> float:
         """
-        Of the last direction by this technique, in solid angle; 0 where it has no density.
+        Of the last direction by this technique, in solid angle; 0 where it has no density. Of light that could be traced
+        from its other end too: per pixel of film and solid angle.
         """
 
     @property
@@ -773,9 +774,10 @@ class PathRecord:
     def radiance(self) -> list[float]:
         """(3,): the estimate."""
 
-def replay(renderer: Renderer, x: int, y: int, sample: int) -> PathRecord:
+def replay(renderer: Renderer, x: int, y: int, sample: int, with_lights: bool = True) -> PathRecord:
     """
-    The path of one sample of a pixel, as `renderer` takes it. Raises ValueError where there is no such pixel.
+    The path of one sample of a pixel, as `renderer` takes it. with_lights: and what paths from lights bring to it, for
+    which those of the whole image are traced; else its radiance is without. Raises ValueError where there is no such pixel.
     """
 
 class TechniqueFilm:

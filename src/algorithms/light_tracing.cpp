@@ -1,7 +1,9 @@
 #include "algorithms/light_tracing.h"
 
+#include <bit>
 #include <map>
 #include <numeric>
+#include <unordered_map>
 
 namespace etendue {
 
@@ -11,6 +13,23 @@ constexpr uint32_t ROUNDS = 4;  // of trials
 
 bool is_delta(const Scene& scene, const Mesh& mesh) {
     return bsdf_is_delta(scene.materials()[mesh.material].bsdf);
+}
+
+using Corners = std::array<float, 9>;
+struct CornersHash {
+    size_t operator()(const Corners& corners) const {
+        uint64_t bits = 0;
+        for (const float x : corners) bits = mix_bits(bits + std::bit_cast<uint32_t>(x));
+        return bits;
+    }
+};
+Corners corners_in_order(const Facet& facet) {
+    std::array<std::array<float, 3>, 3> corners;
+    for (int i = 0; i < 3; ++i) corners[i] = {facet.corners[i].x, facet.corners[i].y, facet.corners[i].z};
+    std::ranges::sort(corners);
+    Corners out;
+    for (size_t i = 0; i < 9; ++i) out[i] = corners[i / 3][i % 3];
+    return out;
 }
 
 }  // namespace
@@ -62,8 +81,9 @@ LightTracing::Trial LightTracing::trace(Context& context, uint32_t number, uint3
         const auto cos_ratio = [&](const vec3& direction) {
             return std::abs(dot(direction, hit.point.normal) / dot(direction, hit.frame.n));
         };
-        // Radiance as it would be where the light came from: what refraction does to it, it undoes to the solid angle.
-        trial.radiance *= bounce.weight * bounce.eta2 * cos_ratio(bounce.wi) / cos_ratio(hit.wo);
+        // Without what refraction does to radiance, as it undoes that to the solid angle.
+        const vec3 tint = bounce.weight * bounce.eta2;
+        trial.radiance *= tint * (cos_ratio(bounce.wi) / cos_ratio(hit.wo));
         ray = hit.ray_towards(bounce.wi);
         if (++trial.edges > max_edges_ || is_black(trial.radiance)) return trial;
         hit = context.intersect(ray);
@@ -105,7 +125,8 @@ std::optional<Splat> LightTracing::path(Context& context, uint32_t number) const
 bool LightTracing::prepare(const Preparation& preparation, const Pilot& pilot, float max_edges,
                            LightSampler::Kind kind, Mis mis) {
     scene_ = &preparation.scene, camera_ = &preparation.camera;
-    max_edges_ = max_edges, kind_ = kind, mis_ = mis;
+    constexpr float LONGEST = 20;
+    max_edges_ = std::min(max_edges, LONGEST), kind_ = kind, mis_ = mis;
     light_factors_ = LightFactors::even(may_choose_kind() ? 0.5f : 1.f);
     find_triangles();
     if (!(choice_.total() > 0)) return true;
@@ -124,14 +145,18 @@ bool LightTracing::prepare(const Preparation& preparation, const Pilot& pilot, f
     // The variance of a sample of a pixel, relative to the image's, with M paths: of what both can find it is
     // integral of F^2 / (p_camera + M p_light), as of the balance heuristic.
     const float pixels = static_cast<float>(camera_->width()) * static_cast<float>(camera_->height());
+    // Where light arrives in this way alone, paths from the camera may have seen none of it.
+    double arrived = 0;
+    for (const Trial& trial : last) arrived += luminance(trial.radiance) * (trial.arrived ? 1.f : 0.f);
+    const double image =
+        std::max(double{pilot.luminance}, arrived / static_cast<double>(last.size()) / pixels);
     const auto effort = [&](float m) {
         double sum = 0;
         for (const Trial& trial : last) {
             if (!trial.arrived) continue;
             sum += sqr(double{luminance(trial.radiance)}) / (trial.film_density / trial.density + m);
         }
-        const double variance =
-            sum / static_cast<double>(last.size()) / (pixels * sqr(double{pilot.luminance}));
+        const double variance = sum / static_cast<double>(last.size()) / (pixels * sqr(image));
         return (pilot.relative_variance + variance) * (pilot.rays + RAY * rays * m / pixels);
     };
     // Trials are few, so a small gain is as good as none, and the fewest paths with nearly the least effort are best: the
@@ -196,6 +221,7 @@ void LightTracing::find_triangles() {
     });
     const float per_length = ACROSS / std::max(max_component(upper - lower), 1e-30f);
     std::map<std::array<int, 4>, Place> numbers;
+    std::unordered_map<Corners, Place, CornersHash> known;
     for_each([&](uint32_t mesh, uint32_t triangle, const Facet& facet) {
         const vec3 cell =
             floor((facet.corners[0] + facet.corners[1] + facet.corners[2] - 3.f * lower) * (per_length / 3));
@@ -203,8 +229,11 @@ void LightTracing::find_triangles() {
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const std::array<int, 4> key{static_cast<int>(cell.x), static_cast<int>(cell.y),
                                      static_cast<int>(cell.z), 2 * axis + (facet.normal[axis] < 0)};
-        const Place place = numbers.try_emplace(key, static_cast<Place>(numbers.size())).first->second;
-        triangles_.push_back({mesh, triangle, place});
+        Place place = numbers.try_emplace(key, static_cast<Place>(numbers.size())).first->second;
+        // Of triangles in the same place, such as the two faces of a mirror, rays meet one: so must paths that begin there.
+        const auto [first, is_new] = known.try_emplace(corners_in_order(facet), place);
+        place = first->second;
+        if (is_new) triangles_.push_back({mesh, triangle, place});
         places_[mesh].push_back(place);
     });
     std::ranges::stable_sort(triangles_, {}, &DeltaTriangle::place);

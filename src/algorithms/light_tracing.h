@@ -52,17 +52,17 @@ class LightTracing {
     uint32_t paths() const { return paths_; }
     std::optional<Splat> path(Context& context, uint32_t number) const;
 
-    /// A path from the camera as one from the light might have found it.
+    /// A path from the camera, of up to `longest` edges, as one from the light might have found it.
     struct CameraPath {
         Lanes film_density;  // W p_bsdf, see above; 0 where it could not be
         Lanes cos_g;
         Lanes area_density;   // p_A
         Lanes light_density;  // p_omega
     };
-    /// Its part of the balance heuristic.
-    Lanes weight(const CameraPath& found) const {
-        const Lanes density = found.area_density * found.light_density / found.cos_g;
-        return balance_heuristic(found.film_density, static_cast<float>(paths_) * density);
+    float longest() const { return max_edges_; }
+    /// With which all paths from lights would have, as `film_density` is that of the camera's.
+    Lanes density(const CameraPath& found) const {
+        return static_cast<float>(paths_) * (found.area_density * found.light_density / found.cos_g);
     }
     /// W, for what a ray of the camera found and a direction of light there.
     template <class F>
@@ -88,11 +88,11 @@ class LightTracing {
         bool of_triangles = false;  // or from another light, as the sky
         float kind_share = 1;       // with which such a light was chosen
         bool arrived = false;       // else the rest means nothing
-        vec2 film;
-        float edges;
-        vec3 radiance;       // over the density by which one path finds it
-        float density;       // that density, cos_g included
-        float film_density;  // of the camera's path
+        vec2 film{0};
+        float edges = 0;
+        vec3 radiance{0};        // over the density by which one path finds it
+        float density = 0;       // that density, cos_g included
+        float film_density = 0;  // of the camera's path
     };
     /// Path `number` of so many.
     Trial trace(Context& context, uint32_t number, uint32_t paths) const;
@@ -108,7 +108,7 @@ class LightTracing {
 
     const Scene* scene_ = nullptr;
     const Camera* camera_ = nullptr;
-    float max_edges_ = 0;
+    float max_edges_ = 0;  // no more than light that is caught in glass may go on for
     LightSampler::Kind kind_{};
     Mis mis_{};
     struct DeltaTriangle {

@@ -20,8 +20,10 @@ struct ContributionOf {
     F edges = 0;            // length of the path
     Vec3<F> unweighted{0};  // as the technique alone would have it
     F weight = 1;           // of the technique among those that could have found the same path (MIS)
-    F pdf = 0;        // of the last direction by this technique, in solid angle; 0: no density, as of a delta
-    F other_pdf = 0;  // of the same direction by the other technique
+    // Of the last direction by this technique, in solid angle; 0: no density, as of a delta. Of light that could be traced from
+    // its other end too: of film and direction together, see light_tracing.h.
+    F pdf = 0;
+    F other_pdf = 0;          // the same by the other technique
     bool borrowed = false;    // found by another pixel's path, see path_reuse.h
     bool from_light = false;  // found by a path from a light, see light_tracing.h
 };

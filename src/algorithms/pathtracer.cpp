@@ -3,7 +3,8 @@
 // Every vertex samples a light on purpose and connects to it over a shadow ray; the path goes on by the BSDF
 // and may find a light by chance.  Light that both can find is shared by weights that add up to 1 ("mis":
 // power or balance heuristic), or left to light sampling ("mis": none).  Light that only chance can find,
-// straight from the camera or after a delta bounce, counts in full.
+// straight from the camera or after a delta bounce, counts in full; but where light is traced from the other end as
+// well ("light_tracing"), through glass and over mirrors to what the camera sees, see light_tracing.h.
 //
 // What paths find from their second surface on may be shared between pixels ("path_reuse"), see path_reuse.h.
 #include "algorithms/direct_light.h"
@@ -31,6 +32,7 @@ class Pathtracer : public Algorithm {
     }
     bool prepare(const Preparation& preparation) override {
         const Scene& scene = preparation.scene;
+        light_tracing_ = {};
         if (reuses_paths_ || traces_light(scene)) {
             const auto try_reuse = [&](SampleQueue& queue) {
                 LaneContext context(scene);
@@ -126,12 +128,16 @@ class Pathtracer : public Algorithm {
                 found.weight = select(could_be_sampled,
                                       bsdf_sampling_weight(mis_, found.pdf, found.other_pdf), Lanes(1));
             }
-            const LaneMask could_be_traced =
-                hits.is_light && !is_first && paths.prev_delta && paths.film_density > 0;
+            const LaneMask could_be_traced = hits.is_light && !is_first && paths.prev_delta &&
+                                             paths.film_density > 0 &&
+                                             paths.edges <= light_tracing_.longest();
             if (any(could_be_traced)) {
                 const Lanes light_density = choice_pmfs(context, paths, hits, could_be_traced) * light.pdf;
-                const Lanes weight = light_tracing_.weight(
+                const Lanes density = light_tracing_.density(
                     {paths.film_density, paths.cos_g, paths.area_density, light_density});
+                found.pdf = select(could_be_traced, paths.film_density, found.pdf);
+                found.other_pdf = select(could_be_traced, density, found.other_pdf);
+                const Lanes weight = balance_heuristic(paths.film_density, density);
                 found.weight = select(could_be_traced, weight, found.weight);
             }
             paths.radiance += context.light(found, hits.is_light);

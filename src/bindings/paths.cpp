@@ -12,7 +12,7 @@ namespace etendue {
 
 namespace {
 
-PathRecord replay_sample(Renderer& renderer, uint32_t x, uint32_t y, uint64_t sample) {
+PathRecord replay_sample(Renderer& renderer, uint32_t x, uint32_t y, uint64_t sample, bool with_lights) {
     const Camera& camera = renderer.sensor().camera;
     if (x >= camera.width() || y >= camera.height()) {
         throw std::invalid_argument("there is no pixel " + std::to_string(x) + "," + std::to_string(y) +
@@ -20,7 +20,8 @@ PathRecord replay_sample(Renderer& renderer, uint32_t x, uint32_t y, uint64_t sa
                                     std::to_string(camera.height()));
     }
     const nb::gil_scoped_release release;
-    return replay(renderer.scene(), renderer.sensor(), renderer.algorithm(), x, y, sample);
+    return replay(renderer.scene(), renderer.sensor(), renderer.algorithm(), x, y, sample, with_lights,
+                  renderer.threads());
 }
 
 std::string technique_name(const Contribution& found) {
@@ -40,7 +41,10 @@ void bind_replay(nb::module_& m) {
         .def_ro("borrowed", &Contribution::borrowed, "It was found by another pixel's path, and shared.")
         .def_ro("from_light", &Contribution::from_light, "It was found by a path from a light.")
         .def_ro("pdf", &Contribution::pdf,
-                "Of the last direction by this technique, in solid angle; 0 where it has no density.")
+                "Of the last direction by this technique, in solid angle; 0 where it has no density. Of "
+                "light that "
+                "could be traced\n"
+                "from its other end too: per pixel of film and solid angle.")
         .def_ro("other_pdf", &Contribution::other_pdf, "Of the same direction by the other technique.");
 
     using Shadow = PathVertex::ShadowRay;
@@ -121,10 +125,13 @@ void bind_replay(nb::module_& m) {
         .def_prop_ro(
             "radiance", [](const PathRecord& p) { return from_vec3(p.radiance); }, "(3,): the estimate.");
 
-    m.def(
-        "replay", &replay_sample, nb::arg("renderer"), nb::arg("x"), nb::arg("y"), nb::arg("sample"),
-        "The path of one sample of a pixel, as `renderer` takes it. Raises ValueError where there is no such "
-        "pixel.");
+    m.def("replay", &replay_sample, nb::arg("renderer"), nb::arg("x"), nb::arg("y"), nb::arg("sample"),
+          nb::arg("with_lights") = true,
+          "The path of one sample of a pixel, as `renderer` takes it. with_lights: and what paths from "
+          "lights bring "
+          "to it, for\nwhich those of the whole image are traced; else its radiance is without. Raises "
+          "ValueError where there is "
+          "no such pixel.");
 }
 
 std::unique_ptr<TechniqueFilm> make_technique_film(Renderer& renderer, int max_edges) {

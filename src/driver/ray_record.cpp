@@ -1,7 +1,7 @@
 #include "driver/ray_record.h"
 
 #include <atomic>
-#include <deque>
+#include <map>
 #include <mutex>
 
 #include "driver/sample_batch.h"
@@ -27,27 +27,30 @@ RayRecord::RayRecord(const Scene& scene, const Sensor& sensor, const Algorithm& 
     : scene_(scene), width_(sensor.camera.width()), height_(sensor.camera.height()) {
     const Tiles tiles(width_, height_);
     tiles_.resize(tiles.count());
+    const auto add = [&](uint32_t tile, const Recorder& recorder) {
+        tiles_[tile].insert(tiles_[tile].end(), recorder.rays.begin(), recorder.rays.end());
+    };
     TileWorkers workers(thread_count(threads));
     LightImage light(scene, sensor, algorithm);
-    std::mutex mutex;
-    std::deque<Recorder> of_light;  // which stay where they are
-    light.trace(workers, 0, samples, false, [&] {
-        const std::lock_guard lock(mutex);
-        return &of_light.emplace_back();
-    });
-    for (size_t i = 0; i < of_light.size(); ++i) {
-        auto& rays = tiles_[i % tiles.count()];
-        rays.insert(rays.end(), of_light[i].rays.begin(), of_light[i].rays.end());
+    const uint64_t at_once = algorithm.light_paths() > 0 ? light.samples_at_once() : samples;
+    for (uint64_t begin = 0; begin < samples; begin += at_once) {
+        const uint64_t end = std::min(begin + at_once, samples);
+        std::mutex mutex;
+        std::map<uint32_t, Recorder> of_light;
+        light.trace(
+            workers, begin, end, [] { return false; },
+            [&](uint32_t part) {
+                const std::lock_guard lock(mutex);
+                return &of_light[part];
+            });
+        for (const auto& [part, recorder] : of_light) add(part % tiles.count(), recorder);
+        workers.for_each(tiles, [&](uint32_t index, const Tile& tile) {
+            SampleBatch<Recorder> batch(scene, sensor, algorithm, light);
+            const auto visit = [&](const auto& sample) { add(index, sample.listener); };
+            batch.add(tile, begin, end, EVERY_SAMPLE, visit);
+            batch.finish(visit);
+        });
     }
-    workers.for_each(tiles, [&](uint32_t index, const Tile& tile) {
-        SampleBatch<Recorder> batch(scene, sensor, algorithm, light);
-        const auto visit = [&](const auto& sample) {
-            const auto& rays = sample.listener.rays;
-            tiles_[index].insert(tiles_[index].end(), rays.begin(), rays.end());
-        };
-        batch.add(tile, 0, samples, EVERY_SAMPLE, visit);
-        batch.finish(visit);
-    });
 }
 
 uint64_t RayRecord::replay(int threads) const {

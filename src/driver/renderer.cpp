@@ -3,7 +3,6 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "driver/beauty.h"
 #include "driver/sample_batch.h"
 
 namespace etendue {
@@ -73,9 +72,10 @@ bool Renderer::render(uint64_t samples, double time_limit) {
         const Clock::time_point pass_start = Clock::now();
         const bool may_stop = done > 0;
         const uint64_t before = done;
-        if (algorithm_->light_paths() > 0) pass = std::min(pass, LightImage::MOST_SAMPLES);
+        if (algorithm_->light_paths() > 0) pass = std::min(pass, light_.samples_at_once());
         done += std::min(pass, samples - done);
-        if (!trace_light(workers, before, done)) break;
+        const auto is_stopped = [&] { return stop_ || (may_stop && seconds_since(start) > time_limit); };
+        if (!trace_light(workers, before, done, is_stopped)) break;
         workers.for_each(tiles_, [&](uint32_t index, const Tile&) {
             render_tile(index, 1, done);
             if (may_stop && seconds_since(start) > time_limit) stop_ = true;
@@ -91,6 +91,7 @@ bool Renderer::render(uint64_t samples, double time_limit) {
     }
     // Who cancels is waiting.
     if (!stop_ || seconds_since(start) > time_limit) look(workers);
+    light_.forget();
     seconds_ = seconds_before + seconds_since(start);
     stop_ = false;
     return std::ranges::all_of(film_.pixels(), [&](const Pixel& pixel) { return pixel.count >= samples; });
@@ -99,7 +100,7 @@ bool Renderer::render(uint64_t samples, double time_limit) {
 bool Renderer::render_coarse(uint32_t stride) {
     const Clock::time_point start = Clock::now();
     TileWorkers workers(threads_);
-    if (prepare(stop_) && trace_light(workers, 0, 1))
+    if (prepare(stop_) && trace_light(workers, 0, 1, [&] { return stop_.load(); }))
         workers.for_each(tiles_, [&](uint32_t index, const Tile&) { render_tile(index, stride, 1); });
     seconds_ = seconds_ + seconds_since(start);
     return !stop_.exchange(false);
@@ -124,28 +125,45 @@ bool Renderer::render_until(double error_bound, double time_limit) {
         const std::vector<TileGoal> goals = next_goals(errors, error_bound);
         complete = goals.empty();
         if (complete) break;
-        // In pieces, so that tiles can be read, the clock is looked at and only some samples' light is kept meanwhile.
-        const auto fewest = [&](const TileGoal& goal) { return errors[goal.tile].fewest; };
-        uint64_t most = 0, done = std::numeric_limits<uint64_t>::max();
-        for (const TileGoal& goal : goals) {
-            most = std::max(most, goal.samples);
-            done = std::min(done, fewest(goal));
-        }
-        while (done < most && !stop_) {
-            const uint64_t before = std::exchange(done, std::min(done + LightImage::MOST_SAMPLES, most));
-            if (!trace_light(workers, before, done)) break;
-            workers.in_order(goals.size(), [&](uint32_t index) {
-                const TileGoal& goal = goals[index];
-                if (stop_ || goal.samples <= before || fewest(goal) >= done) return;
-                render_tile(goal.tile, 1, std::min(done, goal.samples));
-                if (seconds_since(start) > time_limit) stop_ = true;
-            });
-            seconds_ = seconds_before + seconds_since(start);
-        }
+        render_goals(workers, goals, errors, [&] { return stop_ || seconds_since(start) > time_limit; });
+        if (seconds_since(start) > time_limit) stop_ = true;
+        seconds_ = seconds_before + seconds_since(start);
     }
+    light_.forget();
     seconds_ = seconds_before + seconds_since(start);
     stop_ = false;
     return complete;
+}
+
+void Renderer::render_goals(TileWorkers& workers, std::span<const TileGoal> goals,
+                            std::span<const TileError> tiles, const std::function<bool()>& is_stopped) {
+    const auto fewest = [&](const TileGoal& goal) { return tiles[goal.tile].fewest; };
+    // Where light is traced, in steps of what is kept of it at once.
+    const uint64_t step =
+        algorithm_->light_paths() > 0 ? light_.samples_at_once() : std::numeric_limits<uint64_t>::max() / 2;
+    uint64_t begin = 0;
+    for (;;) {
+        uint64_t next = std::numeric_limits<uint64_t>::max(), most = 0;
+        for (const TileGoal& goal : goals) {
+            if (goal.samples <= begin) continue;
+            next = std::min(next, std::max(fewest(goal), begin));
+            most = std::max(most, goal.samples);
+        }
+        if (most == 0) return;
+        begin = next;
+        const uint64_t end = std::min(begin + step, most);
+        if (is_stopped() || !trace_light(workers, begin, end, is_stopped)) return;
+        workers.in_order(goals.size(), [&](uint32_t index) {
+            const TileGoal& goal = goals[index];
+            const uint64_t stop = std::min(end, goal.samples);
+            // In pieces, so that the tile can be read and the clock is looked at meanwhile.
+            for (uint64_t samples = std::max(fewest(goal), begin); samples < stop && !is_stopped();) {
+                samples = std::min(samples + PixelGroups::BLOCK, stop);
+                render_tile(goal.tile, 1, samples);
+            }
+        });
+        begin = end;
+    }
 }
 
 bool Renderer::prepare() {
@@ -179,9 +197,10 @@ std::vector<TileError> Renderer::look(TileWorkers& workers) {
     return errors;
 }
 
-bool Renderer::trace_light(TileWorkers& workers, uint64_t begin, uint64_t end) {
+bool Renderer::trace_light(TileWorkers& workers, uint64_t begin, uint64_t end,
+                           const std::function<bool()>& is_stopped) {
     const uint64_t rays_before = light_.rays();
-    const bool is_complete = light_.trace(workers, first_sample_ + begin, first_sample_ + end, stop_);
+    const bool is_complete = light_.trace(workers, first_sample_ + begin, first_sample_ + end, is_stopped);
     rays_ += light_.rays() - rays_before;
     return is_complete;
 }

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "algorithms/algorithm.h"
+#include "driver/beauty.h"
 #include "driver/contributions.h"
 #include "driver/film_error.h"
 #include "driver/films.h"
@@ -113,8 +114,12 @@ class Renderer {
     bool prepare(const std::atomic<bool>& cancelled);
     /// The tiles' errors, and the film's for others to see.
     std::vector<TileError> look(TileWorkers& workers);
-    /// Before samples [begin, end) of pixels, counted from those of the film. False where it was cancelled.
-    bool trace_light(TileWorkers& workers, uint64_t begin, uint64_t end);
+    /// All the samples of a stage of a beauty render, of tiles that have these.
+    void render_goals(TileWorkers& workers, std::span<const TileGoal> goals, std::span<const TileError> tiles,
+                      const std::function<bool()>& is_stopped);
+    /// Before samples [begin, end) of pixels, counted from those of the film. False where it was stopped.
+    bool trace_light(TileWorkers& workers, uint64_t begin, uint64_t end,
+                     const std::function<bool()>& is_stopped);
     void render_tile(uint32_t index, uint32_t stride, uint64_t samples);
     template <class Listener>
     void render_tile(const Tile& tile, uint32_t stride, uint64_t samples);

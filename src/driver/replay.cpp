@@ -44,12 +44,12 @@ class Recorder : public Observer {
 }  // namespace
 
 PathRecord replay(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm, uint32_t x,
-                  uint32_t y, uint64_t index) {
+                  uint32_t y, uint64_t index, bool with_lights, int threads) {
     const FlushDenormals flush;  // as while rendering
     PathRecord record;
-    TileWorkers workers(1);
     LightImage light(scene, sensor, algorithm);
-    light.trace(workers, index, index + 1, false);
+    TileWorkers workers(thread_count(threads));
+    if (with_lights) light.trace(workers, index, index + 1, [] { return false; });
     SampleBatch<Recorder> batch(scene, sensor, algorithm, light);
     const Tiles tiles(sensor.camera.width(), sensor.camera.height());
     batch.add(tiles[tiles.index_of(x, y)], x, y, index);

@@ -37,8 +37,9 @@ struct PathRecord {
     vec3 radiance{0};                       // the estimate
 };
 
-/// The same path as sample `index` of that pixel in any render with these settings.
+/// The same path as sample `index` of that pixel in any render with these settings. `with_lights`: and what paths from lights
+/// bring to it, for which those of the whole image are traced.
 PathRecord replay(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm, uint32_t x,
-                  uint32_t y, uint64_t index);
+                  uint32_t y, uint64_t index, bool with_lights, int threads);
 
 }  // namespace etendue

@@ -61,7 +61,7 @@ class SampleBatch : public SampleQueue {
         rays_ += algorithm_.estimate(scene_, *this);
         for (size_t i = 0; i < given_; ++i) {
             if (!samples_[i].is_wanted) continue;
-            if (!light_.is_empty()) add_light(samples_[i]);
+            add_light(samples_[i]);
             visit(samples_[i]);
         }
         samples_.clear();
@@ -94,10 +94,10 @@ class SampleBatch : public SampleQueue {
         }
     }
     void add_light(Sample& sample) const {
-        for (const Contribution& found : light_.at(sample.x, sample.y, sample.index)) {
+        light_.for_each(sample.x, sample.y, sample.index, [&](const Contribution& found) {
             sample.radiance += found.unweighted * found.weight;
             if constexpr (std::derived_from<Listener, Observer>) sample.listener.contribution(found);
-        }
+        });
     }
     /// Of the next samples, as many as there are lanes.
     void make_rays() {

@@ -65,21 +65,24 @@ bool TechniqueFilm::render(uint64_t samples) {
     samples_done_ = 0;
     TileWorkers workers(threads_);
     LightImage light(scene_, sensor_, algorithm_);
-    if (!light.trace(workers, samples_, samples_ + samples, stop_)) {
-        stop_ = false;
-        return false;
+    const uint64_t all = samples_ + samples;
+    for (uint64_t begin = samples_; begin < all && !stop_;) {
+        const uint64_t end =
+            algorithm_.light_paths() > 0 ? std::min(begin + light.samples_at_once(), all) : all;
+        if (!light.trace(workers, begin, end, [&] { return stop_.load(); })) break;
+        workers.for_each(Tiles(width(), height()), [&](uint32_t, const Tile& tile) {
+            SampleBatch<TechniqueObserver> batch(scene_, sensor_, algorithm_, light, &stop_);
+            TechniqueSums sums(max_edges_);
+            const auto visit = [&](const auto& sample) {
+                ++samples_done_;
+                for (const Contribution& found : sample.listener.all) sums.add(found);
+                sums.move_to(&sums_[slot(pixel(sample.x, sample.y), weighted, Technique::bsdf_sampling, 1)]);
+            };
+            batch.add(tile, begin, end, EVERY_SAMPLE, visit);
+            batch.finish(visit);
+        });
+        begin = end;
     }
-    workers.for_each(Tiles(width(), height()), [&](uint32_t, const Tile& tile) {
-        SampleBatch<TechniqueObserver> batch(scene_, sensor_, algorithm_, light, &stop_);
-        TechniqueSums sums(max_edges_);
-        const auto visit = [&](const auto& sample) {
-            ++samples_done_;
-            for (const Contribution& found : sample.listener.all) sums.add(found);
-            sums.move_to(&sums_[slot(pixel(sample.x, sample.y), weighted, Technique::bsdf_sampling, 1)]);
-        };
-        batch.add(tile, samples_, samples_ + samples, EVERY_SAMPLE, visit);
-        batch.finish(visit);
-    });
     if (stop_.exchange(false)) return false;
     samples_ += samples;
     return true;

@@ -28,7 +28,7 @@ std::optional<vec2> Camera::film_of(const vec3& point) const {
         if (!(ahead > 0)) return std::nullopt;
         return 0.5f * (size + size.y / (tan_half_fov_ * ahead) * vec2(aside.x, -aside.y));
     }
-    const float phi = std::atan2(aside.x, ahead), theta = std::acos(aside.y / glm::length(to_point));
+    const float phi = std::atan2(aside.x, ahead), theta = std::atan2(std::hypot(aside.x, ahead), aside.y);
     return vec2(size.x * (phi / (2 * PI) + 0.5f), size.y * theta / PI);
 }
 

@@ -63,6 +63,18 @@ class Camera {
     };
     /// That from a uniform point of the lens; empty behind a perspective camera.
     std::optional<View> view_of(const vec3& point, const vec2& u_lens) const;
+    /// Calls visit(film) for a place on the film and those beyond its edges that see the same: a panorama goes on there.
+    void for_each_image(const vec2& film, const auto& visit) const {
+        visit(film);
+        if (settings_.perspective) return;
+        const float w = static_cast<float>(width_), h = static_cast<float>(height_);
+        for (const float turn : {-1.f, 1.f}) {
+            visit(vec2(film.x + turn * w, film.y));
+            for (const float half_turns : {-1.5f, -0.5f, 0.5f, 1.5f}) {
+                visit(vec2(film.x + half_turns * w, turn < 0 ? -film.y : 2 * h - film.y));
+            }
+        }
+    }
     /// How much film, in pixels, sees a solid angle around the direction of a ray from one point of the lens.
     template <class V, class F = NumberOf<V>>
     F film_per_solid_angle(const V& direction) const {

@@ -77,11 +77,23 @@ def sunshine() -> Place:
     return world, camera((0.5, 1.4, 1.2), (0, 0.2, 0), 70, panorama=True)
 
 
+def edge_of_a_panorama() -> Place:
+    """The caustic is where the picture's left and right meet, and at its lower edge; of a mirror with two faces."""
+    mirror = meshes.quad((0.4, 0.2, 0.3), (0.4, 0.2, -0.3), (0.6, 0.8, -0.3), (0.6, 0.8, 0.3))
+    world = scene(
+        (ground(6), diffuse(0.7)),
+        (meshes.merged([mirror, mirror.flipped()]), MIRROR),
+        small_lamp(-0.1, 1.2, 0, 0.1, 60),
+    )
+    return world, camera((-0.15, 0.7, 0.02), (-1, 0.7, 0.02), 70, panorama=True)
+
+
 PLACES: dict[str, Callable[[], Place]] = {
     "ball": ball,
     "mirrors": mirrors,
     "aquarium": aquarium,
     "sunshine": sunshine,
+    "edge": edge_of_a_panorama,
 }
 
 
@@ -182,6 +194,30 @@ def test_samples_do_not_depend_on_how_they_are_taken(image_filter: str) -> None:
             assert all(c.from_light and c.edges > 2 for c in again.from_lights)
             found += len(again.from_lights)
     assert found > 0
+
+
+def test_a_beauty_render_is_the_same_in_pieces() -> None:
+    """Its tiles have different numbers of samples, and paths from lights land on all of them."""
+    world, view = ball()
+    whole = _core.Renderer(world, view, "Pathtracer", {"path_reuse": False}, seed=4, threads=2)
+    assert whole.render_until(0.1)
+    assert whole.light_paths > 0
+    assert len(np.unique(whole.sample_count())) > 1
+    pieces = _core.Renderer(world, view, "Pathtracer", {"path_reuse": False}, seed=4, threads=1)
+    while not pieces.render_until(0.1, time_limit=0.05):
+        pass
+    np.testing.assert_array_equal(whole.sum(), pieces.sum())
+
+
+def test_light_that_camera_paths_never_find_is_traced() -> None:
+    """A lamp of a millimetre in a ball of glass."""
+    world = scene(
+        (ground(4), diffuse(0.7)), (meshes.sphere(0.2).moved(y=0.5), GLASS), small_lamp(0, 0.5, 0, 1e-3, 1e6)
+    )
+    renderer = _core.Renderer(world, camera((0.3, 1.5, 2.4), (0, 0, 0), 40), "Pathtracer")
+    assert renderer.light_paths > 0
+    renderer.render(4)
+    assert np.median(renderer.mean()) > 0
 
 
 def test_techniques_and_parts_add_up_to_the_picture() -> None:

@@ -37,13 +37,17 @@ Scene::Data world(float radiance) {
     Scene::Data data;
     const std::vector<uint8_t> opacity{0, 255, 255, 0};
     data.textures.push_back(std::make_shared<Texture>(2, 2, 1, opacity.data(), false));
-    data.materials = {material("diffuse", 0), material("light", radiance), material("glass", 0)};
+    data.materials = {material("diffuse", 0), material("light", radiance), material("glass", 0),
+                      material("light", 1e4f * radiance)};
     data.materials[2].cutout_texture = data.textures[0].get();
-    data.meshes = {quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, 0),
-                   quad({-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}, 1),
-                   // So many triangles shine that there is something to learn about them.
-                   quad({-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}, 1),
-                   quad({-1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 1, 0}, 2)};
+    data.meshes = {
+        quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, 0),
+        quad({-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}, 1),
+        // So many triangles shine that there is something to learn about them.
+        quad({-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}, 1),
+        quad({-1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 1, 0}, 2),
+        // And so small a one that its light is traced through the glass.
+        quad({-0.5f, 0.5f, -0.3f}, {-0.5f, 0.5f, -0.31f}, {-0.5f, 0.51f, -0.31f}, {-0.5f, 0.51f, -0.3f}, 3)};
     data.sky.emplace();
     return data;
 }
@@ -96,6 +100,7 @@ int main() {
     const Scene scene(world(5));
     const auto one = renderer(scene, 1), three = renderer(scene, 3);
     require(one->render(12), "one thread renders");
+    require(one->algorithm().light_paths() > 0, "light is traced through the glass");
     watched(*three, 12);
     require(same(*one, *three), "threads do not change the picture");
 

@@ -19,9 +19,13 @@ HERE = Path(__file__).parent
 FAST = (
     "tests/estimators/test_analytic.py",
     "tests/estimators/test_invariance.py",
+    "tests/estimators/test_light_tracing.py",
     "tests/statistics/test_bsdf_edges.py",
 )
-CHOSEN = "(furnace and not 200) or glass or mirrors or sky or threads or steps or keeps_what or instrumented or edges"
+CHOSEN = (
+    "not mean_stays and ((furnace and not 200) or glass or mirrors or sky or threads or steps or keeps_what"
+    " or instrumented or edges or pieces or are_taken)"
+)
 
 pytestmark = pytest.mark.slow
 

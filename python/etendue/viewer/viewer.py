@@ -242,7 +242,7 @@ class Viewer:
             numbers = range(max(taken - _PATHS_SHOWN, 0), max(taken, 1))
             algorithm = scene.config.algorithm
             found = [
-                Replay(self.pixel, number, algorithm, _core.replay(renderer, x, y, number))
+                Replay(self.pixel, number, algorithm, _core.replay(renderer, x, y, number, with_lights=False))
                 for number in reversed(numbers)
             ]
             self._replays = (key, found)
