@@ -55,7 +55,7 @@ class Config(Section):
     max_light_path_length: Annotated[int, Field(ge=0, le=LONGEST_PATH), WHOLE] = Field(
         default=5,
         title="Longest light path",
-        description="The same for paths from a light; without effect on algorithms that have none.",
+        description="For paths from a light, of algorithms that count these apart: none does.",
     )
     rr_min_path_length: Annotated[int, Field(ge=0, le=LONGEST_PATH), WHOLE] = Field(
         default=1,
