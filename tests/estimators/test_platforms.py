@@ -12,6 +12,7 @@ from scipy import stats
 
 from .. import builds
 from .test_invariance import SIZE, cornell
+from .test_light_tracing import PLACES, render
 from .worlds import Estimator
 
 RUNS, SPP = 8, 16
@@ -24,19 +25,25 @@ def images() -> np.ndarray:
     return np.array([estimator.render(world, camera, SPP, seed=seed).mean() for seed in range(RUNS)])
 
 
+def caustics() -> np.ndarray:
+    """Renders in which light is traced from the lights."""
+    places = [make() for make in PLACES.values()]
+    return np.array([render(place, True, 8, sampler="sobol", path_reuse=True).mean() for place in places])
+
+
 @pytest.fixture(scope="module")
 def portable() -> Path:
     """A build for any x86-64: without fused multiply-add, and with 4 lanes."""
     return builds.core_in(builds.build(builds.ROOT / "build" / "portable", "_core", "-DETENDUE_NATIVE=OFF"))
 
 
-def images_by(core: Path, home: Path) -> np.ndarray:
-    """The same renders by another build, with the Embree settings of a home folder."""
+def images_by(core: Path, home: Path, what: str = "images") -> np.ndarray:
+    """The renders of a function above by another build, with the Embree settings of a home folder."""
     file = home / "images.npy"
     code = (
         "import sys, numpy; sys.path.insert(0, sys.argv[3])\n"
         "from tests.conftest import _use_core; _use_core(sys.argv[1])\n"
-        "from tests.estimators import test_platforms as here; numpy.save(sys.argv[2], here.images())\n"
+        f"from tests.estimators import test_platforms as here; numpy.save(sys.argv[2], here.{what}())\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, str(core), str(file), str(builds.ROOT)],
@@ -52,6 +59,7 @@ def images_by(core: Path, home: Path) -> np.ndarray:
 @pytest.mark.slow
 def test_another_width_of_registers_gives_the_same_picture(portable: Path, tmp_path: Path) -> None:
     np.testing.assert_array_equal(images_by(portable, tmp_path), images())
+    np.testing.assert_array_equal(images_by(portable, tmp_path, "caustics"), caustics())
 
 
 @pytest.mark.slow
