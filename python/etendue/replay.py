@@ -32,7 +32,7 @@ class Replay:
 
     @property
     def radiance(self) -> tuple[float, float, float]:
-        """The sample's linear radiance: what the film adds up."""
+        """The sample's linear radiance: what the film adds up; in the viewer without what is traced from the lights."""
         r, g, b = self.path.radiance
         return r, g, b
 

@@ -7,7 +7,7 @@
 //
 //     light - g - ... - e - x - camera
 //
-// is easy: choose a point g on the scene's delta surfaces, uniform per area, and a light from there as next event
+// is easy: choose a point g on the scene's delta surfaces, of density p_A per area, and a light from there as next event
 // estimation does; follow the light through further delta surfaces to the first x that is none, and connect x to the lens.
 //
 // The measure. A path tracer integrates over film and direction at x, ds d omega_x; here area and direction at g are

@@ -76,9 +76,7 @@ std::vector<PixelMeans> means_of(const ReuseTrial& trial) {
 struct Variances {
     float alone = 0, shared = 0;
 };
-Variances variances_of(const std::vector<PixelMeans>& pixels) {
-    vec3 mean(0);
-    for (const PixelMeans& pixel : pixels) mean += pixel.mean() / static_cast<float>(pixels.size());
+Variances variances_of(const std::vector<PixelMeans>& pixels, const vec3& mean) {
     std::vector<float> alone, shared;
     for (const PixelMeans& pixel : pixels) {
         const vec3 scale = pixel.mean() * pixel.mean() + EPSILON * mean * mean + 1e-30f;
@@ -112,7 +110,9 @@ std::optional<Pilot> fly(const Preparation& preparation, bool may_share, const T
         rays += static_cast<float>(trial.rays);
         rays_of_sharing += static_cast<float>(trial.rays_of_sharing);
     }
-    const Variances variances = variances_of(pixels);
+    vec3 mean(0);
+    for (const PixelMeans& pixel : pixels) mean += pixel.mean() / static_cast<float>(pixels.size());
+    const Variances variances = variances_of(pixels, mean);
     const float b = std::max(variances.alone - variances.shared, 0.f) / (1 - 1.f / PIXELS);
     const float a = variances.alone - b;
     const auto variance = [&](uint32_t n) { return a + b / static_cast<float>(n); };
@@ -127,8 +127,6 @@ std::optional<Pilot> fly(const Preparation& preparation, bool may_share, const T
     for (uint32_t n = 2; may_share && n <= PathReuse::MOST_PIXELS; n *= 2) {
         if (effort(n) < effort(best)) best = n;
     }
-    vec3 mean(0);
-    for (const PixelMeans& pixel : pixels) mean += pixel.mean() / static_cast<float>(pixels.size());
     // The sums are of squared differences of two means of 16 samples, over three channels.
     const float per_sample = SAMPLES / 2.f / 3 / static_cast<float>(pixels.size());
     return Pilot{best, luminance(mean), variance(best) * per_sample,

@@ -16,10 +16,11 @@ class LightImage {
     LightImage(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm)
         : scene_(scene), sensor_(sensor), algorithm_(algorithm) {}
 
-    /// How many samples are to be traced at once at most, so that few paths are kept.
+    /// How many samples are to be traced at once at most, so that few paths are kept; any number where there are none.
     uint64_t samples_at_once() const {
-        constexpr uint64_t PATHS = 1 << 20, MOST = 16;
-        return std::clamp<uint64_t>(PATHS / std::max(algorithm_.light_paths(), 1u), 1, MOST);
+        constexpr uint64_t PATHS = 1 << 20, MOST = 16, ANY = std::numeric_limits<uint64_t>::max() / 2;
+        const uint64_t paths = algorithm_.light_paths();
+        return paths == 0 ? ANY : std::clamp<uint64_t>(PATHS / paths, 1, MOST);
     }
 
     /// Traces what belongs to samples [begin, end), and forgets all others. `observe(part)`, where given, is told of the rays of

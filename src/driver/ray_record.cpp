@@ -32,9 +32,8 @@ RayRecord::RayRecord(const Scene& scene, const Sensor& sensor, const Algorithm& 
     };
     TileWorkers workers(thread_count(threads));
     LightImage light(scene, sensor, algorithm);
-    const uint64_t at_once = algorithm.light_paths() > 0 ? light.samples_at_once() : samples;
-    for (uint64_t begin = 0; begin < samples; begin += at_once) {
-        const uint64_t end = std::min(begin + at_once, samples);
+    for (uint64_t begin = 0, end = 0; begin < samples; begin = end) {
+        end = std::min(begin + light.samples_at_once(), samples);
         std::mutex mutex;
         std::map<uint32_t, Recorder> of_light;
         light.trace(

@@ -72,7 +72,7 @@ bool Renderer::render(uint64_t samples, double time_limit) {
         const Clock::time_point pass_start = Clock::now();
         const bool may_stop = done > 0;
         const uint64_t before = done;
-        if (algorithm_->light_paths() > 0) pass = std::min(pass, light_.samples_at_once());
+        pass = std::min(pass, light_.samples_at_once());
         done += std::min(pass, samples - done);
         const auto is_stopped = [&] { return stop_ || (may_stop && seconds_since(start) > time_limit); };
         if (!trace_light(workers, before, done, is_stopped)) break;
@@ -138,9 +138,6 @@ bool Renderer::render_until(double error_bound, double time_limit) {
 void Renderer::render_goals(TileWorkers& workers, std::span<const TileGoal> goals,
                             std::span<const TileError> tiles, const std::function<bool()>& is_stopped) {
     const auto fewest = [&](const TileGoal& goal) { return tiles[goal.tile].fewest; };
-    // Where light is traced, in steps of what is kept of it at once.
-    const uint64_t step =
-        algorithm_->light_paths() > 0 ? light_.samples_at_once() : std::numeric_limits<uint64_t>::max() / 2;
     uint64_t begin = 0;
     for (;;) {
         uint64_t next = std::numeric_limits<uint64_t>::max(), most = 0;
@@ -151,7 +148,7 @@ void Renderer::render_goals(TileWorkers& workers, std::span<const TileGoal> goal
         }
         if (most == 0) return;
         begin = next;
-        const uint64_t end = std::min(begin + step, most);
+        const uint64_t end = std::min(begin + light_.samples_at_once(), most);
         if (is_stopped() || !trace_light(workers, begin, end, is_stopped)) return;
         workers.in_order(goals.size(), [&](uint32_t index) {
             const TileGoal& goal = goals[index];

@@ -67,8 +67,7 @@ bool TechniqueFilm::render(uint64_t samples) {
     LightImage light(scene_, sensor_, algorithm_);
     const uint64_t all = samples_ + samples;
     for (uint64_t begin = samples_; begin < all && !stop_;) {
-        const uint64_t end =
-            algorithm_.light_paths() > 0 ? std::min(begin + light.samples_at_once(), all) : all;
+        const uint64_t end = std::min(begin + light.samples_at_once(), all);
         if (!light.trace(workers, begin, end, [&] { return stop_.load(); })) break;
         workers.for_each(Tiles(width(), height()), [&](uint32_t, const Tile& tile) {
             SampleBatch<TechniqueObserver> batch(scene_, sensor_, algorithm_, light, &stop_);

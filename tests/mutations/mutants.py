@@ -110,7 +110,7 @@ MUTANTS = (
         TRACING,
     ),
     Mutant(
-        "light traced that lands on one pixel of those whose filter sees it",
+        "light spread over pixels by another density than the filter's",
         "gi/filter.cpp",
         "2 * x * x * x / (CELLS * width)",
         "3 * x * x * x / (CELLS * width)",

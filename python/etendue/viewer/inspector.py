@@ -21,7 +21,10 @@ def draw(viewer: Viewer) -> None:
             imgui.text_wrapped("Click a pixel of the image.")
         else:
             _draw_value(viewer)
-            for replay in viewer.replays():
+            replays, renderer = viewer.replays(), viewer.session.renderer
+            if replays and renderer is not None and renderer.light_paths > 0:
+                imgui.text_wrapped("Its paths, without light that is traced from the lights:")
+            for replay in replays:
                 radiance = ", ".join(f"{value:.3g}" for value in replay.radiance)
                 edges = len(replay.vertices)
                 if imgui.tree_node(f"sample {replay.sample}: {radiance}; {edges} edges###{replay.sample}"):
