@@ -16,7 +16,7 @@ _core = core_at(os.environ.get("ETENDUE_BENCHMARK_CORE"))
 
 
 class Renderer:
-    """See the package. Options: `sampler`, `path_reuse` and `light_tracing`, besides those of all."""
+    """See the package. Options: `sampler` and the estimator's switches, besides those of all."""
 
     rays: int | None = None
 
@@ -48,7 +48,7 @@ class Renderer:
         self.parameters: dict[str, Any] = {"max_cam_path_length": world.edges}
         if not options.get("as_users"):
             self.parameters["rr_threshold"] = 0.0
-        for name in ("path_reuse", "light_tracing"):
+        for name in ("path_reuse", "light_tracing", "light_splitting"):
             if name in options:
                 self.parameters[name] = options[name]
 

@@ -390,10 +390,10 @@ class Sampler:
     def __init__(self, kind: str = 'sobol', seed: int = 0) -> None:
         """Raises ValueError for an unknown kind."""
 
-    def points(self, pixel: int, first: int, count: int, vertex: int = 0, pairs: int = 1) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
+    def points(self, pixel: int, first: int, count: int, vertex: int = 0, pairs: int = 1, part: tuple[int, int] | None = None) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
         """
         Samples first .. first + count of a pixel: the first `pairs` two-dimensional draws at a vertex of the path, float32
-        (count, 2 pairs).
+        (count, 2 pairs). part: (k, n), the draws of part k of n of each sample, n a power of two.
         """
 
     def points_in_lanes(self, pixel: int, first: int, count: int, vertex: int = 0, pairs: int = 1) -> Annotated[NDArray[numpy.float32], dict(shape=(None, None))]:
@@ -567,6 +567,12 @@ class Renderer:
     def sharing(self) -> int:
         """
         How many pixels share what their paths find, see the function `sharing`.
+        """
+
+    @property
+    def light_samples(self) -> int:
+        """
+        How many lights are sampled at the first surface of each path, by estimators that sample lights.
         """
 
     @property

@@ -99,6 +99,9 @@ struct CameraSample {
     bool shares = false;  // its path with that of the sample before it, see Algorithm::sharing
 };
 
+/// Samples of a queue, about: enough for lanes to be full most of the time.
+inline constexpr size_t QUEUE_SAMPLES = 4096;
+
 /// Samples to be estimated, in any order.
 class SampleQueue {
   public:
@@ -136,6 +139,8 @@ class Algorithm {
     /// others; 1: none. The second can be told before it has learned anything.
     virtual uint32_t sharing() const { return 1; }
     virtual uint32_t sharing_at_most() const { return 1; }
+    /// How many lights it samples at the first surface of each path, if it samples any.
+    virtual uint32_t light_samples() const { return 1; }
     /// How many paths from lights belong to a sample of every pixel. What they bring is added to what `estimate` finds, which
     /// leaves it out.
     virtual uint32_t light_paths() const { return 0; }

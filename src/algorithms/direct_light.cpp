@@ -6,7 +6,7 @@ ETENDUE_LANES_FLATTEN ConnectionOf<Lanes> connect_to_lights(LaneContext& context
                                                             const LaneMask& on, const LaneVec3& throughput,
                                                             const Lanes& edges, LightSampler::Kind kind,
                                                             const PerLane<const LightFactors*>& learned,
-                                                            Mis mis) {
+                                                            Mis mis, float light_samples) {
     const LaneMask asks = on && !hits.is_delta;
     if (!any(asks)) return {};
     const PerLane<float> finer_digits = to_array(context.sampler.next_1d(asks));
@@ -29,7 +29,7 @@ ETENDUE_LANES_FLATTEN ConnectionOf<Lanes> connect_to_lights(LaneContext& context
     }
     const LightSampleOf<Lanes> samples = Light::sample_Li(
         mask_of(chosen), hits.point.position, lights, triangles, {lanes_of(remapped), u.y}, mis != Mis::none);
-    return connection(hits.point, hits.frame.n, samples, lanes_of(pmfs),
+    return connection(hits.point, hits.frame.n, samples, light_samples * lanes_of(pmfs),
                       hits.values(samples.exists, samples.wi), throughput, edges, mis);
 }
 

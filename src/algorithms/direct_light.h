@@ -24,6 +24,16 @@ inline Parameter mis_parameter() {
             {"power", "balance", "none"}};
 }
 
+inline Parameter light_splitting_parameter() {
+    return {
+        "light_splitting",
+        "whether up to four lights are sampled, not one, at the first surface of each path, where that pays",
+        true,
+        0,
+        0,
+        {}};
+}
+
 /// How an estimator chooses its lights.
 class LightChoice {
   public:
@@ -47,6 +57,7 @@ class LightChoice {
     // See Algorithm.
     bool learns(const Scene& scene) const { return learns_ && !scene.light_sampler().tree().empty(); }
     bool prepare(const Preparation& preparation, int max_edges, Mis mis) {
+        guide_ = {};
         return guide_.learn(preparation, max_edges, mis);
     }
 
@@ -104,7 +115,7 @@ struct ConnectionOf {
     Vec3<F> irradiance;  // |cos| radiance / pdf: of the vertex, before its BSDF
 };
 
-/// From a vertex to a place on a light, which was chosen with probability `pmf`; `bsdf`: in that direction. The throughput
+/// From a vertex to a place on a light, to which `pmf` samples go in the mean; `bsdf`: in that direction. The throughput
 /// is the vertex's, at the end of a path of one edge less than `edges`.
 template <class F>
 ConnectionOf<F> connection(const SurfacePointOf<F>& point, const Vec3<F>& shading_normal,
@@ -158,10 +169,12 @@ inline ConnectionOf<float> connect_to_light(Context& context, const SurfaceHit& 
     return choice ? connect(hit, *choice, across, throughput, edges, mis) : ConnectionOf<float>();
 }
 
-/// And for the vertices of several paths, those that are `on`.
+/// And for the vertices of several paths, those that are `on`. `light_samples`: of how many at
+/// each vertex this is one.
 ConnectionOf<Lanes> connect_to_lights(LaneContext& context, const SurfaceHits& hits, const LaneMask& on,
                                       const LaneVec3& throughput, const Lanes& edges, LightSampler::Kind kind,
-                                      const PerLane<const LightFactors*>& learned, Mis mis);
+                                      const PerLane<const LightFactors*>& learned, Mis mis,
+                                      float light_samples = 1);
 
 /// What arrives over a connection, for which its shadow ray is traced.
 inline vec3 light_over(Context& context, const ConnectionOf<float>& connection) {

@@ -17,6 +17,13 @@ class LaneContext {
         is_observed_ = is_observed_ || sample.observer;
     }
 
+    /// A lane, which is free, goes back to the first surface of a sample's path, with other numbers.
+    void start_at_first(int lane, const CameraSample& sample, const Sampler::Stream& numbers) {
+        sampler.start(lane, numbers);
+        observers_[lane] = sample.observer;
+        if (sample.observer) sample.observer->back_at_first();
+    }
+
     bool is_observed() const { return is_observed_; }
     /// Who listens to a lane's path from now on.
     void observe(int lane, Observer* observer) { observers_[lane] = observer; }

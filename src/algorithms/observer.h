@@ -35,6 +35,8 @@ class Observer {
     /// The path's next edge, and what is at its end.
     virtual void edge(const Ray& /*ray*/, const SurfaceHit& /*hit*/) {}
     virtual void shadow_ray(const Ray& /*ray*/, bool /*visible*/) {}
+    /// The path has ended; what is told from now on is of its first surface.
+    virtual void back_at_first() {}
     /// A look from the path's first surface at the second of another pixel's path, see path_reuse.h.
     virtual void reuse_ray(const Ray& /*ray*/, bool /*visible*/) {}
     /// How the path goes on, if it does.

@@ -5,23 +5,13 @@ namespace etendue {
 void PathReuse::begin(const CameraSample& sample) {
     Path& path = paths_.emplace_back();
     ys_.emplace_back();
-    path.ray = sample.ray;
+    connections_.resize(paths_.size() * MOST_PIXELS);
     path.observer = sample.observer;
     if (!sample.shares) return;
     path.place = paths_[paths_.size() - 2].place + 1;
     for (uint32_t back = 0; back <= path.place; ++back) {
         paths_[paths_.size() - 1 - back].size = path.place + 1;
     }
-}
-
-void PathReuse::add_first(const LaneMask& on, const PerLane<size_t>& samples, const SurfaceHits& hits) {
-    for_lanes(on, [&](int i) {
-        Path& path = paths_[samples[i]];
-        path.part = hits.found.part[i];
-        path.triangle = hits.found.triangle[i];
-        path.barycentrics = hits.found.barycentrics(i);
-        path.distance = hits.found.distance[i];
-    });
 }
 
 void PathReuse::add_second(const LaneMask& on, const PerLane<size_t>& samples, const Second& second) {
@@ -66,29 +56,26 @@ void PathReuse::end(size_t sample, const vec3& radiance) {
     y.exists = is_black(y.radiance) ? 0.f : 1.f;
 }
 
-std::vector<PathReuse::Estimates> PathReuse::share(LaneContext& context) {
-    connections_.assign(paths_.size() * MOST_PIXELS, {});
-    for (size_t first = 0; first < paths_.size(); first += LANES) connect(context, first);
+std::vector<PathReuse::Estimates> PathReuse::estimates() const {
     std::vector<float> densities(paths_.size());
     for (size_t k = 0; k < paths_.size(); ++k) densities[k] = density(k);
-    std::vector<Estimates> estimates(paths_.size());
+    std::vector<Estimates> all(paths_.size());
     for (size_t i = 0; i < paths_.size(); ++i) {
         const Path& path = paths_[i];
-        estimates[i] = {path.own, path.own};
+        all[i] = {path.own, path.own};
         for (uint32_t partner = 0; partner < path.size; ++partner) {
             const size_t k = partner_of(i, partner);
             const Connection& connection = at(i, partner);
             vec3 worth(0);
             if (connection.density > 0) {
                 worth = connection.value / densities[k];
-                estimates[i].shared += worth * ys_[k].radiance;
-                if (partner == 0)
-                    estimates[i].alone += connection.value / connection.density * ys_[k].radiance;
+                all[i].shared += worth * ys_[k].radiance;
+                if (partner == 0) all[i].alone += connection.value / connection.density * ys_[k].radiance;
             }
             if (path.observer && paths_[k].beyond) tell(path, paths_[k], worth, partner > 0);
         }
     }
-    return estimates;
+    return all;
 }
 
 void PathReuse::tell(const Path& path, const Path& found_by, const vec3& worth, bool borrowed) {
@@ -113,35 +100,21 @@ float PathReuse::density(size_t path) const {
     return sum;
 }
 
-ETENDUE_LANES_FLATTEN void PathReuse::connect(LaneContext& context, size_t first) {
-    const size_t count = std::min(size_t{LANES}, paths_.size() - first);
-    VectorArrays origins, directions;
-    FoundHits found;
-    PerLane<bool> sees{};
+ETENDUE_LANES_FLATTEN void PathReuse::connect(LaneContext& context, size_t first, const LaneMask& on,
+                                              const SurfaceHits& hits) {
     uint32_t partners = 0;
-    for (size_t i = 0; i < count; ++i) {
-        const Path& path = paths_[first + i];
-        sees[i] = path.part != nullptr;
-        partners = std::max(partners, path.size);
-        origins.set(i, path.ray.origin), directions.set(i, path.ray.direction);
-        found.part[i] = path.part, found.triangle[i] = path.triangle, found.distance[i] = path.distance;
-        found.b1[i] = path.barycentrics.x, found.b2[i] = path.barycentrics.y;
-    }
-    const LaneMask on = mask_of(sees);
-    if (!any(on)) return;
-    SurfaceHits hits({origins.lanes(), directions.lanes()}, on, found);
-    hits.read_colours();
+    for_lanes(on, [&](int i) { partners = std::max(partners, paths_[first + i].size); });
     for (uint32_t partner = 0; partner < partners; ++partner) {
         static const Shared NOTHING;
         PerLane<const float*> lines;
         lines.fill(&NOTHING.position.x);
         PerLane<bool> asks{};
-        for (size_t i = 0; i < count; ++i) {
-            if (!sees[i] || partner >= paths_[first + i].size) continue;
+        for_lanes(on, [&](int i) {
+            if (partner >= paths_[first + i].size) return;
             const Shared& y = ys_[partner_of(first + i, partner)];
             asks[i] = y.exists > 0;
             if (asks[i]) lines[i] = &y.position.x;
-        }
+        });
         LaneMask valid = mask_of(asks);
         if (!any(valid)) continue;
         const LineColumns y = columns_of(lines);

@@ -21,14 +21,17 @@
 #include <memory>
 #include <vector>
 
-#include "algorithms/lane_context.h"
+#include "algorithms/first_surfaces.h"
 
 namespace etendue {
 
 /// The paths of a queue's samples, while they are traced and until they are shared.
 class PathReuse {
   public:
-    PathReuse() { paths_.reserve(EXPECTED), ys_.reserve(EXPECTED); }
+    PathReuse() {
+        paths_.reserve(QUEUE_SAMPLES), ys_.reserve(QUEUE_SAMPLES);
+        connections_.reserve(QUEUE_SAMPLES * MOST_PIXELS);
+    }
 
     /// How many pixels share their paths at most.
     static constexpr uint32_t MOST_PIXELS = 16;
@@ -43,9 +46,6 @@ class PathReuse {
 
     /// A sample's path begins, the next of the queue.
     void begin(const CameraSample& sample);
-
-    /// The first surfaces that paths see, those that are `on`; `samples`: whose paths they are.
-    void add_first(const LaneMask& on, const PerLane<size_t>& samples, const SurfaceHits& hits);
 
     /// A path at its second surface y, where what is found from there on begins to be shared.
     struct Second {
@@ -67,8 +67,13 @@ class PathReuse {
     struct Estimates {
         vec3 alone, shared;
     };
-    /// Once all have ended: connects the paths that are to be shared, and gives each sample's estimates.
-    std::vector<Estimates> share(LaneContext& context);
+    /// Light that is of its pixel alone, found once it has ended.
+    void add_own(size_t sample, const vec3& radiance) { paths_[sample].own += radiance; }
+    /// Once all have ended: connects those from `first` on that are `on` with what others of their groups have found. `hits`: what
+    /// they see first.
+    void connect(LaneContext& context, size_t first, const LaneMask& on, const SurfaceHits& hits);
+    /// Once all are connected: the estimates of each sample.
+    std::vector<Estimates> estimates() const;
 
     /// Contributions found beyond y, kept until it is known what they are worth to whom.
     class Beyond : public Observer {
@@ -102,8 +107,6 @@ class PathReuse {
     void observe_beyond(LaneContext& context, const LaneMask& on, const PerLane<size_t>& samples);
 
   private:
-    static constexpr size_t EXPECTED = 4096;  // samples of a queue, about: for memory to be asked for once
-
     /// y, as all of its group want to know it: a line of the cache.
     struct alignas(64) Shared {
         vec3 position{0};
@@ -116,11 +119,6 @@ class PathReuse {
     static_assert(sizeof(Shared) == LINE_FLOATS * sizeof(float));
 
     struct Path {
-        Ray ray;                          // the camera's
-        const ScenePart* part = nullptr;  // of x; null where nothing is shared
-        uint32_t triangle = 0;
-        vec2 barycentrics{0};
-        float distance = 0;
         uint32_t place = 0, size = 1;  // in its group, which lies together
         float survival = 1;
         vec3 own{0};  // that is of its pixel alone
@@ -138,8 +136,6 @@ class PathReuse {
         float density = 0;
     };
 
-    /// The paths from `first` on, as many as there are lanes, with all of their groups.
-    void connect(LaneContext& context, size_t first);
     LaneMask sees_each_other(LaneContext& context, size_t first, const SurfacePointOf<Lanes>& x,
                              const SurfacePointOf<Lanes>& y, const LaneVec3& wi, const LaneMask& on) const;
     /// A path's observer learns what another of its group, or itself, found beyond y. `worth`: of radiance from there.

@@ -6,7 +6,8 @@
 // straight from the camera or after a delta bounce, counts in full; but where light is traced from the other end as
 // well ("light_tracing"), through glass and over mirrors to what the camera sees, see light_tracing.h.
 //
-// What paths find from their second surface on may be shared between pixels ("path_reuse"), see path_reuse.h.
+// What paths find from their second surface on may be shared between pixels ("path_reuse"), see path_reuse.h. And at the
+// first surface several lights may be sampled for each path ("light_splitting"), see pilot.h.
 #include "algorithms/direct_light.h"
 #include "algorithms/lane_paths.h"
 #include "algorithms/light_tracing.h"
@@ -25,52 +26,47 @@ class Pathtracer : public Algorithm {
           mis_(mis_of(parameters)),
           reuses_paths_(parameters.get<bool>("path_reuse")),
           may_trace_light_(parameters.get<bool>("light_tracing")),
+          splits_light_(parameters.get<bool>("light_splitting")),
           roulette_(parameters) {}
 
-    bool learns(const Scene& scene) const override {
-        return reuses_paths_ || traces_light(scene) || light_choice_.learns(scene);
-    }
+    bool learns(const Scene& scene) const override { return flies(scene) || light_choice_.learns(scene); }
     bool prepare(const Preparation& preparation) override {
         const Scene& scene = preparation.scene;
         light_tracing_ = {};
-        if (reuses_paths_ || traces_light(scene)) {
-            const auto try_reuse = [&](SampleQueue& queue) {
-                LaneContext context(scene);
-                PathReuse reuse;
-                follow(context, queue, reuse);
-                const uint64_t rays = context.rays;
-                return ReuseTrial{reuse.share(context), rays, context.rays - rays};
+        if (light_choice_.learns(scene) &&
+            !light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_))
+            return false;
+        if (flies(scene)) {
+            const auto attempt = [&](SampleQueue& queue, const Together& together) {
+                return estimate_together(scene, queue, together);
             };
-            const auto pilot = fly(preparation, reuses_paths_, try_reuse);
+            const auto pilot = fly(preparation, reuses_paths_, splits_light_, attempt);
             if (!pilot) return false;
             if (traces_light(scene) &&
                 !light_tracing_.prepare(preparation, *pilot, MAX_CAM_PATH_LENGTH, light_choice_.kind(), mis_))
                 return false;
-            sharing_ = pilot->sharing;
+            sharing_ = pilot->sharing, light_samples_ = pilot->light_samples;
         }
-        return !light_choice_.learns(scene) ||
-               light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_);
+        return true;
     }
 
     uint32_t sharing() const override { return sharing_; }
     uint32_t sharing_at_most() const override { return reuses_paths_ ? PathReuse::MOST_PIXELS : 1; }
 
+    uint32_t light_samples() const override { return light_samples_; }
     uint32_t light_paths() const override { return light_tracing_.paths(); }
     std::optional<Splat> light_path(Context& context, uint32_t number) const override {
         return light_tracing_.path(context, number);
     }
 
     uint64_t estimate(const Scene& scene, SampleQueue& queue) const override {
-        if (sharing_ == 1) {
-            return etendue::follow<Paths>(
+        if (sharing_ == 1 && light_samples_ == 1) {
+            return follow<Paths>(
                 scene, queue, [&](LaneContext& context, Paths& paths) { extend(context, paths, nullptr); });
         }
-        LaneContext context(scene);
-        PathReuse reuse;
-        follow(context, queue, reuse);
-        const std::vector<PathReuse::Estimates> estimates = reuse.share(context);
-        for (size_t i = 0; i < estimates.size(); ++i) queue.estimated(i, estimates[i].shared);
-        return context.rays;
+        const Trial trial = estimate_together(scene, queue, {sharing_ > 1, light_samples_});
+        for (size_t i = 0; i < trial.estimates.size(); ++i) queue.estimated(i, trial.estimates[i].shared);
+        return trial.rays + trial.rays_of_sharing;
     }
 
     static std::vector<Parameter> parameters() {
@@ -80,10 +76,12 @@ class Pathtracer : public Algorithm {
         all.push_back(mis_parameter());
         all.push_back(PathReuse::parameter());
         all.push_back(LightTracing::parameter());
+        all.push_back(light_splitting_parameter());
         return all;
     }
 
   private:
+    bool flies(const Scene& scene) const { return reuses_paths_ || splits_light_ || traces_light(scene); }
     bool traces_light(const Scene& scene) const { return may_trace_light_ && LightTracing::may_pay(scene); }
 
     struct Paths : LanePaths {
@@ -101,15 +99,57 @@ class Pathtracer : public Algorithm {
         Lanes film_density = 0, cos_g = 1, area_density = 1;
     };
 
-    void follow(LaneContext& context, SampleQueue& queue, PathReuse& reuse) const {
-        etendue::follow<Paths>(
-            context, queue, [&](const CameraSample& sample) { reuse.begin(sample); },
-            [&](Paths& paths) { extend(context, paths, &reuse); },
+    /// The paths of a queue, of which something is left to do once all have ended.
+    struct Queued {
+        Together together;
+        FirstSurfaces firsts;
+        PathReuse reuse;
+    };
+
+    Trial estimate_together(const Scene& scene, SampleQueue& queue, const Together& together) const {
+        LaneContext context(scene);
+        Queued queued{together, {}, {}};
+        FirstSurfaces& firsts = queued.firsts;
+        PathReuse& reuse = queued.reuse;
+        follow<Paths>(
+            context, queue, [&](const CameraSample& sample) { firsts.begin(sample), reuse.begin(sample); },
+            [&](Paths& paths) { extend(context, paths, &queued); },
             [&](size_t sample, const vec3& radiance) { reuse.end(sample, radiance); });
+        Trial trial;
+        firsts.for_each([&](size_t first, const LaneMask& on, const SurfaceHits& hits) {
+            if (together.light_samples > 1) light_first(context, queued, first, on, hits);
+            const uint64_t before = context.rays;
+            if (together.shares) reuse.connect(context, first, on, hits);
+            trial.rays_of_sharing += context.rays - before;
+        });
+        trial.rays = context.rays - trial.rays_of_sharing;
+        trial.estimates = reuse.estimates();
+        return trial;
     }
 
-    /// By an edge. `reuse`: null where paths are not shared.
-    void extend(LaneContext& context, Paths& paths, PathReuse* reuse) const {
+    /// Light sampled on purpose at what the paths from `first` on see first, several times for each.
+    void light_first(LaneContext& context, Queued& queued, size_t first, const LaneMask& on,
+                     const SurfaceHits& hits) const {
+        const PerLane<const LightFactors*> learned = light_choice_.learned(hits, on);
+        const uint32_t samples = queued.together.light_samples;
+        LaneVec3 radiance(0);
+        for (uint32_t k = 0; k < samples; ++k) {
+            for_lanes(on, [&](int i) {
+                const CameraSample& sample = queued.firsts.sample(first + i);
+                context.start_at_first(i, sample, Sampler::part(sample.numbers, k, samples));
+            });
+            context.sampler.start_vertex(1);
+            const auto connection = connect_to_lights(context, hits, on, LaneVec3(1), 2, light_choice_.kind(),
+                                                      learned, mis_, static_cast<float>(samples));
+            radiance += light_over(context, connection, on);
+        }
+        for_lanes(on, [&](int i) { queued.reuse.add_own(first + i, radiance.lane(i)); });
+    }
+
+    /// By an edge. `queued`: null where nothing is left to do once they have ended.
+    void extend(LaneContext& context, Paths& paths, Queued* queued) const {
+        PathReuse* const reuse = queued && queued->together.shares ? &queued->reuse : nullptr;
+        const bool splits_light = queued && queued->together.light_samples > 1;
         const LaneMask on = paths.alive, is_first = paths.edges == 1;
         context.sampler.start_vertex(paths.edges);
         SurfaceHits hits = context.intersect(paths.rays, on, [&] {
@@ -125,6 +165,10 @@ class Pathtracer : public Algorithm {
             if (any(could_be_sampled)) {
                 found.pdf = select(could_be_sampled, paths.prev_pdf, Lanes(0));
                 found.other_pdf = choice_pmfs(context, paths, hits, could_be_sampled) * light.pdf;
+                if (splits_light) {
+                    const auto samples = static_cast<float>(queued->together.light_samples);
+                    found.other_pdf *= select(paths.edges == 2, Lanes(samples), Lanes(1));
+                }
                 found.weight = select(could_be_sampled,
                                       bsdf_sampling_weight(mis_, found.pdf, found.other_pdf), Lanes(1));
             }
@@ -147,8 +191,11 @@ class Pathtracer : public Algorithm {
         // Light sampled on purpose, one edge further.
         hits.read_colours();
         PerLane<const LightFactors*> learned = light_choice_.learned(hits, goes_on && !hits.is_delta);
-        paths.connection = connect_to_lights(context, hits, goes_on, paths.throughput, paths.edges + 1,
-                                             light_choice_.kind(), learned, mis_);
+        if (queued) queued->firsts.add(goes_on && is_first && !hits.is_delta, paths.sample, hits);
+        const LaneMask is_later = is_first && LaneMask(splits_light);
+        if (splits_light) context.sampler.skip(is_later && goes_on && !hits.is_delta, 2);
+        paths.connection = connect_to_lights(context, hits, goes_on && !is_later, paths.throughput,
+                                             paths.edges + 1, light_choice_.kind(), learned, mis_);
 
         // Continue by the BSDF; on a lamp, which absorbs, there is nothing to continue with.
         const BsdfSampleOf<Lanes> bounce = context.bounce(hits, goes_on);
@@ -184,7 +231,6 @@ class Pathtracer : public Algorithm {
                    const BsdfSampleOf<Lanes>& bounce, PathReuse& reuse) const {
         const LaneMask is_first = paths.edges == 1;
         paths.scale = select(is_first, Lanes(1), paths.scale);
-        reuse.add_first(goes_on && is_first && !hits.is_delta, paths.sample, hits);
         LaneMask shared = goes_on && paths.edges == 2 && !paths.prev_delta;
         if (!any(shared)) return shared;
         const Lanes share = hits.diffuse_shares(shared);
@@ -242,9 +288,9 @@ class Pathtracer : public Algorithm {
     const float MAX_CAM_PATH_LENGTH;
     LightChoice light_choice_;
     const Mis mis_;
-    const bool reuses_paths_, may_trace_light_;
+    const bool reuses_paths_, may_trace_light_, splits_light_;
     LightTracing light_tracing_;
-    uint32_t sharing_ = 1;
+    uint32_t sharing_ = 1, light_samples_ = 1;
     const RussianRoulette roulette_;
 };
 

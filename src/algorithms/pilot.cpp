@@ -9,15 +9,17 @@ namespace {
 // Random numbers that no render uses.
 constexpr uint64_t SEED = 0xf11e7ca3b0a7ull;
 // The variance is that of two blocks of Sobol's sequence, so what stratification does to it is in it.
-constexpr uint32_t GROUPS_ACROSS = 5, GROUPS = GROUPS_ACROSS * GROUPS_ACROSS, PIXELS = 8, BLOCKS = 2,
-                   SAMPLES = 16;
+constexpr uint32_t GROUPS_ACROSS = 7, GROUPS = GROUPS_ACROSS * GROUPS_ACROSS, PIXELS = 8, BLOCKS = 2,
+                   SAMPLES = 8;
+constexpr float ALL_SAMPLES = GROUPS * PIXELS * BLOCKS * SAMPLES;
 constexpr uint32_t TILE = 16;  // side of the square that the pixels of a group are in
 // The largest variances, which may be those of rare bright samples, are left out: one in so many.
 constexpr uint32_t LEFT_OUT = 20;
 // Of the square of the image's mean: what is added to a pixel's, so that the darkest do not decide.
 constexpr float EPSILON = 0.01f;
-// Measured on the bundled scenes: the time of sharing at all, and of one more ray over that of those of a path.
-constexpr float OVERHEAD = 0.06f, RAY = 0.8f;
+// What takes time, as measured on the bundled scenes, by that of one ray of a path: to come back to the first surface, and there
+// a look at a partner's path and a light that is sampled.
+constexpr float COME_BACK = 0.7f, PARTNER = 0.8f, LIGHT = 1;
 
 /// The samples of a group of pixels, block after block.
 class GroupQueue : public SampleQueue {
@@ -58,79 +60,114 @@ class GroupQueue : public SampleQueue {
 /// Of one pixel: the means of its blocks.
 struct PixelMeans {
     std::array<vec3, BLOCKS> alone{}, shared{};
-    vec3 mean() const { return 0.5f * (alone[0] + alone[1]); }
 };
 
-std::vector<PixelMeans> means_of(const ReuseTrial& trial) {
-    std::vector<PixelMeans> means(PIXELS);
-    for (size_t i = 0; i < trial.estimates.size(); ++i) {
-        PixelMeans& pixel = means[i % PIXELS];
-        const size_t block = i / PIXELS / SAMPLES;
-        pixel.alone[block] += trial.estimates[i].alone / float{SAMPLES};
-        pixel.shared[block] += trial.estimates[i].shared / float{SAMPLES};
+/// What the trials of all groups tell.
+struct Measured {
+    std::vector<PixelMeans> pixels;
+    float rays = 0, rays_of_sharing = 0;  // of a sample
+
+    explicit Measured(std::span<const Trial> trials) {
+        for (const Trial& trial : trials) {
+            PixelMeans* const group = &*pixels.insert(pixels.end(), PIXELS, {});
+            for (size_t i = 0; i < trial.estimates.size(); ++i) {
+                const size_t block = i / PIXELS / SAMPLES;
+                group[i % PIXELS].alone[block] += trial.estimates[i].alone / float{SAMPLES};
+                group[i % PIXELS].shared[block] += trial.estimates[i].shared / float{SAMPLES};
+            }
+            rays += static_cast<float>(trial.rays) / ALL_SAMPLES;
+            rays_of_sharing += static_cast<float>(trial.rays_of_sharing) / ALL_SAMPLES;
+        }
     }
-    return means;
+};
+
+/// What variances are relative to: of each pixel the square of its mean, by the best estimates that there are. By its own, an
+/// estimate would hide how far off it is.
+struct Scales {
+    vec3 mean{0};  // of all pixels
+    std::vector<vec3> squares;
+
+    explicit Scales(const Measured& best) {
+        for (const PixelMeans& pixel : best.pixels) {
+            const vec3 of_pixel = 0.5f * (pixel.shared[0] + pixel.shared[1]);
+            mean += of_pixel / static_cast<float>(best.pixels.size());
+            squares.push_back(of_pixel * of_pixel);
+        }
+        for (vec3& square : squares) square += EPSILON * mean * mean + 1e-30f;
+    }
+};
+
+/// The sum of the relative variances of all pixels but the noisiest.
+float variance_of(const Measured& measured, const Scales& scales,
+                  std::array<vec3, BLOCKS> PixelMeans::* means) {
+    std::vector<float> variances;
+    for (size_t i = 0; i < measured.pixels.size(); ++i) {
+        const std::array<vec3, BLOCKS>& blocks = measured.pixels[i].*means;
+        const vec3 difference = blocks[0] - blocks[1];
+        variances.push_back(dot(difference * difference / scales.squares[i], vec3(1)));
+    }
+    std::ranges::sort(variances);
+    variances.resize(variances.size() - variances.size() / LEFT_OUT);
+    return std::accumulate(variances.begin(), variances.end(), 0.f);
 }
 
-/// Sums of the relative variances of all pixels.
-struct Variances {
-    float alone = 0, shared = 0;
-};
-Variances variances_of(const std::vector<PixelMeans>& pixels, const vec3& mean) {
-    std::vector<float> alone, shared;
-    for (const PixelMeans& pixel : pixels) {
-        const vec3 scale = pixel.mean() * pixel.mean() + EPSILON * mean * mean + 1e-30f;
-        const auto relative = [&](const vec3& difference) {
-            return dot(difference * difference / scale, vec3(1));
-        };
-        alone.push_back(relative(pixel.alone[0] - pixel.alone[1]));
-        shared.push_back(relative(pixel.shared[0] - pixel.shared[1]));
-    }
-    const auto trimmed_sum = [](std::vector<float>& all) {
-        std::ranges::sort(all);
-        return std::accumulate(all.begin(), all.end() - static_cast<ptrdiff_t>(all.size() / LEFT_OUT), 0.f);
-    };
-    return {trimmed_sum(alone), trimmed_sum(shared)};
+/// Of a variance the part that `n` times as many samples of something would bring down to its nth.
+float part_of(float variance, float variance_with, float n) {
+    return std::max(variance - variance_with, 0.f) / (1 - 1 / n);
 }
 
 }  // namespace
 
-std::optional<Pilot> fly(const Preparation& preparation, bool may_share, const TryReuse& try_reuse) {
-    std::vector<ReuseTrial> trials(GROUPS);
-    const bool complete = preparation.for_each(GROUPS, [&](uint32_t group) {
-        GroupQueue queue(preparation.camera, group);
-        trials[group] = try_reuse(queue);
+std::optional<Pilot> fly(const Preparation& preparation, bool may_share, bool may_split, const Try& attempt) {
+    const uint32_t most_pixels = may_share ? PathReuse::MOST_PIXELS : 1,
+                   most_lights = may_split ? MOST_LIGHT_SAMPLES : 1;
+    // Of each group with one light and, after all those, with as many as there may be.
+    std::vector<Trial> trials(may_split ? 2 * GROUPS : GROUPS);
+    const bool complete = preparation.for_each(static_cast<uint32_t>(trials.size()), [&](uint32_t i) {
+        GroupQueue queue(preparation.camera, i % GROUPS);
+        trials[i] = attempt(queue, {may_share, i < GROUPS ? 1 : most_lights});
     });
     if (!complete) return std::nullopt;
-    std::vector<PixelMeans> pixels;
-    float rays = 1, rays_of_sharing = 0;
-    for (const ReuseTrial& trial : trials) {
-        const std::vector<PixelMeans> means = means_of(trial);
-        pixels.insert(pixels.end(), means.begin(), means.end());
-        rays += static_cast<float>(trial.rays);
-        rays_of_sharing += static_cast<float>(trial.rays_of_sharing);
-    }
-    vec3 mean(0);
-    for (const PixelMeans& pixel : pixels) mean += pixel.mean() / static_cast<float>(pixels.size());
-    const Variances variances = variances_of(pixels, mean);
-    const float b = std::max(variances.alone - variances.shared, 0.f) / (1 - 1.f / PIXELS);
-    const float a = variances.alone - b;
-    const auto variance = [&](uint32_t n) { return a + b / static_cast<float>(n); };
-    // Over that of the paths themselves.
-    const auto rays_with = [&](uint32_t n) {
-        return static_cast<float>(n - 1) / (PIXELS - 1) * rays_of_sharing / rays;
+    const std::span<const Trial> all = trials;
+    const Measured one(all.first(GROUPS)), several(all.last(GROUPS));
+    const Scales scales(several);
+    const float one_alone = variance_of(one, scales, &PixelMeans::alone),
+                one_shared = variance_of(one, scales, &PixelMeans::shared),
+                several_alone = variance_of(several, scales, &PixelMeans::alone),
+                several_shared = variance_of(several, scales, &PixelMeans::shared);
+
+    // As in pilot.h.
+    const float b =
+        (part_of(one_alone, one_shared, PIXELS) + part_of(several_alone, several_shared, PIXELS)) / 2;
+    const float c = part_of(one_shared, several_shared, MOST_LIGHT_SAMPLES);
+    const float a = std::max(one_shared - b / PIXELS - c, 0.f);
+    const auto variance = [&](const Pilot& of) {
+        return a + b / static_cast<float>(of.sharing) + c / static_cast<float>(of.light_samples);
     };
-    const auto effort = [&](uint32_t n) {
-        return variance(n) * (1 + (n > 1 ? OVERHEAD : 0) + RAY * rays_with(n));
+    // More rays than those of the path, and with them its time, in rays.
+    const auto to_partners = [&](const Pilot& of) {
+        return static_cast<float>(of.sharing - 1) / (PIXELS - 1) * one.rays_of_sharing;
     };
-    uint32_t best = 1;
-    for (uint32_t n = 2; may_share && n <= PathReuse::MOST_PIXELS; n *= 2) {
-        if (effort(n) < effort(best)) best = n;
+    const auto to_lights = [&](const Pilot& of) {
+        return static_cast<float>(of.light_samples - 1) / (MOST_LIGHT_SAMPLES - 1) *
+               (several.rays - one.rays);
+    };
+    const auto effort = [&](const Pilot& of) {
+        const bool comes_back = of.sharing > 1 || of.light_samples > 1;
+        return variance(of) *
+               (one.rays + (comes_back ? COME_BACK : 0) + PARTNER * to_partners(of) + LIGHT * to_lights(of));
+    };
+    Pilot best;
+    for (uint32_t pixels = 1; pixels <= most_pixels; pixels *= 2) {
+        for (uint32_t lights = 1; lights <= most_lights; lights *= 2) {
+            if (effort({pixels, lights}) < effort(best)) best = {pixels, lights};
+        }
     }
-    // The sums are of squared differences of two means of 16 samples, over three channels.
-    const float per_sample = SAMPLES / 2.f / 3 / static_cast<float>(pixels.size());
-    return Pilot{best, luminance(mean), variance(best) * per_sample,
-                 rays / (GROUPS * PIXELS * BLOCKS * SAMPLES) * (1 + rays_with(best))};
+    best.luminance = luminance(scales.mean);
+    // The sums are of squared differences of two means of so many samples, over three channels.
+    best.relative_variance = variance(best) * (SAMPLES / 2.f / 3 / static_cast<float>(one.pixels.size()));
+    best.rays = one.rays + to_partners(best) + to_lights(best);
+    return best;
 }
 
 }  // namespace etendue

@@ -236,6 +236,10 @@ void bind_renderer(nb::module_& m) {
             "sharing", [](Renderer& r) { return r.algorithm().sharing(); },
             "How many pixels share what their paths find, see the function `sharing`.")
         .def_prop_ro(
+            "light_samples", [](Renderer& r) { return r.algorithm().light_samples(); },
+            "How many lights are sampled at the first surface of each path, by estimators that sample "
+            "lights.")
+        .def_prop_ro(
             "light_paths", [](Renderer& r) { return r.algorithm().light_paths(); },
             "How many paths from lights belong to a sample of every pixel; 0: none.")
         .def_prop_ro("error", &Renderer::error,

@@ -120,11 +120,12 @@ void bind_sampler(nb::module_& m) {
         .def(
             "points",
             [](const PythonSampler& self, uint32_t pixel, uint64_t first, size_t count, uint32_t vertex,
-               size_t pairs) {
-                Sampler sampler(sampler_kind(self.kind), self.seed);
+               size_t pairs, std::optional<std::pair<uint32_t, uint32_t>> part) {
+                const Sampler samples(sampler_kind(self.kind), self.seed);
                 auto out = new_array<Out<float, nb::shape<-1, -1>>>({count, 2 * pairs});
                 for (size_t i = 0; i < count; ++i) {
-                    sampler.start(pixel, first + i);
+                    const Sampler::Stream whole = samples.stream(pixel, first + i);
+                    Sampler sampler(part ? Sampler::part(whole, part->first, part->second) : whole);
                     sampler.start_vertex(vertex);
                     for (size_t pair = 0; pair < pairs; ++pair) {
                         const vec2 u = sampler.next_2d();
@@ -135,9 +136,10 @@ void bind_sampler(nb::module_& m) {
                 return out;
             },
             nb::arg("pixel"), nb::arg("first"), nb::arg("count"), nb::arg("vertex") = 0, nb::arg("pairs") = 1,
+            nb::arg("part") = nb::none(),
             "Samples first .. first + count of a pixel: the first `pairs` two-dimensional draws at a vertex "
             "of the path, float32\n"
-            "(count, 2 pairs).")
+            "(count, 2 pairs). part: (k, n), the draws of part k of n of each sample, n a power of two.")
         .def(
             "points_in_lanes",
             [](const PythonSampler& self, uint32_t pixel, uint64_t first, size_t count, uint32_t vertex,

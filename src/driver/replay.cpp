@@ -10,9 +10,11 @@ namespace {
 class Recorder : public Observer {
   public:
     void edge(const Ray& ray, const SurfaceHit& hit) override {
+        here_ = path.vertices.size();
         path.vertices.push_back({ray, hit, throughput_, {}, {}, {}, {}});
     }
     void shadow_ray(const Ray& ray, bool visible) override { here().shadow_rays.push_back({ray, visible}); }
+    void back_at_first() override { here_ = 0; }
     void bounce(const BsdfSample& sample) override {
         if (!sample.exists) return;
         here().bounce = sample;
@@ -36,8 +38,9 @@ class Recorder : public Observer {
     PathRecord path;
 
   private:
-    PathVertex& here() { return path.vertices.back(); }
+    PathVertex& here() { return path.vertices[here_]; }
 
+    size_t here_ = 0;
     vec3 throughput_{1};
 };
 

@@ -24,9 +24,6 @@ class SampleBatch : public SampleQueue {
         Listener listener;
     };
 
-    /// As many as are estimated between two looks at them: enough for lanes to be full most of the time.
-    static constexpr size_t CAPACITY = 4096;
-
     /// `light`: of all samples that will be asked for. Once `stop` is true, where there is one, no more samples are given out.
     SampleBatch(const Scene& scene, const Sensor& sensor, const Algorithm& algorithm, const LightImage& light,
                 const std::atomic<bool>* stop = nullptr)
@@ -46,7 +43,7 @@ class SampleBatch : public SampleQueue {
             PixelGroups(tile, algorithm_.sharing(), block).for_each([&](const auto& places) {
                 for (uint64_t index = begin; index < stop; ++index) {
                     add_group(places, index, [&](const Place& place) { return wanted(place, index); });
-                    if (samples_.size() >= CAPACITY) finish(visit);
+                    if (samples_.size() >= QUEUE_SAMPLES) finish(visit);
                 }
             });
             begin = stop;

@@ -24,6 +24,12 @@ class LaneSampler {
         }
     }
 
+    /// So many draws, for the lanes that are `on`, are left out.
+    void skip(const LaneMask& on, uint32_t draws) {
+        if (kind_ == Sampler::Kind::independent) return;
+        used_ += simd::static_simd_cast<LaneBits>(select(on, Lanes(static_cast<float>(draws)), Lanes(0)));
+    }
+
     /// For the lanes that are `on`; the others draw nothing.
     Lanes next_1d(const LaneMask& on) {
         if (kind_ == Sampler::Kind::independent) return next_independent(on);

@@ -135,6 +135,16 @@ class Sampler {
                 mix_bits(mix_bits(seed_ ^ pixel) + replicate)};
     }
 
+    /// The numbers of part `part` of so many of a sample, a power of two; others than the sample's own. Parts are stratified
+    /// like samples: those of any power of two of consecutive samples, all together.
+    static Stream part(const Stream& sample, uint32_t part, uint32_t parts) {
+        if (sample.kind == Kind::independent) return {sample.kind, 0, mix_bits(~sample.key + part)};
+        // What no longer fits into the index selects another scrambling, see `stream`.
+        const uint32_t replicate = sample.reversed_index & (parts - 1);
+        return {sample.kind, sample.reversed_index / parts | SobolPoint<uint32_t>::reverse_bits(part),
+                mix_bits(~sample.key + replicate)};
+    }
+
     /// Begins a sample at dimension 0.
     void start(const Stream& stream) {
         kind_ = stream.kind, key_ = stream.key, reversed_index_ = stream.reversed_index;

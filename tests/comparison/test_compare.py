@@ -125,6 +125,7 @@ class TestResults:
             "mis": ["none", None],
             "path_reuse": [True, None],
             "light_tracing": [True, None],
+            "light_splitting": [True, None],
         }
 
     def test_images_are_those_of_ordinary_renders(self, lit: Path) -> None:

@@ -38,6 +38,7 @@ CHOICE = "tests/statistics/test_light_choice.py"
 GUIDE = "tests/estimators/test_light_guide.py"
 REUSE = ("tests/estimators/test_path_reuse.py", "-k", "mean")
 TRACING = ("tests/estimators/test_light_tracing.py", "-k", "mean or spreads")
+SPLITTING = ("tests/estimators/test_light_splitting.py", "-k", "mean or noise")
 SAMPLER = "tests/statistics/test_sampler.py"
 
 
@@ -115,6 +116,27 @@ MUTANTS = (
         "2 * x * x * x / (CELLS * width)",
         "3 * x * x * x / (CELLS * width)",
         ("tests/statistics/test_filter.py", "-k", "density"),
+    ),
+    Mutant(
+        "light sampled several times as if it were once",
+        "algorithms/direct_light.cpp",
+        "light_samples * lanes_of(pmfs)",
+        "lanes_of(pmfs)",
+        SPLITTING,
+    ),
+    Mutant(
+        "light found by chance weighted as if one had been sampled",
+        "algorithms/pathtracer.cpp",
+        "select(paths.edges == 2, Lanes(samples), Lanes(1))",
+        "Lanes(1)",
+        SPLITTING,
+    ),
+    Mutant(
+        "the same light sampled several times",
+        "algorithms/pathtracer.cpp",
+        "Sampler::part(sample.numbers, k, samples)",
+        "Sampler::part(sample.numbers, 0, samples)",
+        SPLITTING,
     ),
     Mutant(
         "paths shared with pixels that do not see them",

@@ -49,6 +49,22 @@ def test_sobol_is_a_net_in_every_block(pixel: int, vertex: int) -> None:
                     )
 
 
+@pytest.mark.parametrize("parts", [2, 4, 8])
+def test_parts_of_samples_are_a_net_together(parts: int) -> None:
+    """And no part of a sample has the sample's own numbers, nor those that other samples have."""
+    sobol = _core.Sampler("sobol", 7)
+    for first in (0, 64, 1 << 32, (1 << 32) - 64):
+        points = np.concatenate([sobol.points(3, first, 64, 1, 1, part=(k, parts)) for k in range(parts)])
+        for columns in (1, parts, 8 * parts, 64 * parts):
+            assert in_strata(points.astype(float), columns, 64 * parts // columns)
+    far = [sobol.points(3, first, 64, 1, 1, part=(1, parts)) for first in (0, (1 << 32) - 64, 1 << 32)]
+    assert not any(np.isin(far[i], far[j]).any() for i, j in ((0, 1), (0, 2), (1, 2)))
+    for kind in KINDS:
+        sampler = _core.Sampler(kind, 7)
+        each = [sampler.points(3, 0, 64), *(sampler.points(3, 0, 64, part=(k, parts)) for k in range(parts))]
+        assert len(np.unique(np.concatenate(each)[:, 0])) > 64 * (parts + 1) - 3
+
+
 @pytest.mark.parametrize(("pixel", "vertex"), PLACES)
 def test_sobol_numbers_are_stratified(pixel: int, vertex: int) -> None:
     """The same for one-dimensional draws."""
