@@ -21,7 +21,10 @@ PEERS = ROOT / "build" / "benchmarks" / "peers"
 CONTESTANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "etendue": ("etendue", {}),
     "etendue-1-thread": ("etendue", {"threads": 1}),
-    "etendue-alone": ("etendue", {"path_reuse": False, "light_tracing": False, "light_splitting": False}),
+    "etendue-alone": (
+        "etendue",
+        dict.fromkeys(("path_reuse", "light_tracing", "light_splitting", "portals"), False),
+    ),
     "mitsuba-llvm": ("mitsuba", {"variant": "llvm_ad_rgb"}),
     "mitsuba-scalar": ("mitsuba", {"variant": "scalar_rgb"}),
     "cycles": ("cycles", {}),

@@ -576,6 +576,10 @@ class Renderer:
         """
 
     @property
+    def by_portals(self) -> bool:
+        """Whether directions to smooth glass and mirrors are sampled there too."""
+
+    @property
     def light_paths(self) -> int:
         """How many paths from lights belong to a sample of every pixel; 0: none."""
 
@@ -665,6 +669,10 @@ class Contribution:
     @property
     def from_light(self) -> bool:
         """It was found by a path from a light."""
+
+    @property
+    def by_portal(self) -> bool:
+        """It was found beside the path, through glass or over mirrors."""
 
     @property
     def pdf(self) -> float:
@@ -771,6 +779,12 @@ class PathRecord:
     @property
     def from_lights(self) -> list[Contribution]:
         """Contributions that paths from lights brought to this sample."""
+
+    @property
+    def by_portals(self) -> list[Contribution]:
+        """
+        Contributions that were found beside the path, from its first surface through glass and over mirrors.
+        """
 
     @property
     def borrowed(self) -> list[Contribution]:

@@ -53,6 +53,9 @@ class Replay:
         if self.path.borrowed:
             yield ""
             yield f"found by the paths of other pixels, and shared: {_triple(_total(self.path.borrowed))}"
+        if self.path.by_portals:
+            yield ""
+            yield f"found beside the path, through glass and over mirrors: {_triple(_total(self.path.by_portals))}"
         if self.path.from_lights:
             yield ""
             yield f"found by paths from lights: {_triple(_total(self.path.from_lights))}"

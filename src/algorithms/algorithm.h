@@ -141,6 +141,8 @@ class Algorithm {
     virtual uint32_t sharing_at_most() const { return 1; }
     /// How many lights it samples at the first surface of each path, if it samples any.
     virtual uint32_t light_samples() const { return 1; }
+    /// Whether it samples directions to smooth glass and mirrors there too.
+    virtual bool by_portals() const { return false; }
     /// How many paths from lights belong to a sample of every pixel. What they bring is added to what `estimate` finds, which
     /// leaves it out.
     virtual uint32_t light_paths() const { return 0; }

@@ -26,6 +26,8 @@ class FirstSurfaces {
         });
     }
 
+    /// Of paths.
+    size_t count() const { return seen_.size(); }
     const CameraSample& sample(size_t path) const { return seen_[path].sample; }
 
     /// Calls visit(first, on, hits) for the paths from `first` on, as many as there are lanes, and what those of them see that

@@ -13,6 +13,10 @@ void LaneContext::tell_edges(const LaneRays& lane_rays, const LaneMask& on, cons
     });
 }
 
+void LaneContext::tell_portal_rays(const LaneRays& lane_rays, const LaneMask& on) {
+    tell_each(on, [&](Observer& observer, int i) { observer.portal_ray(ray_of(lane_rays, i)); });
+}
+
 void LaneContext::tell_shadow_rays(const LaneRays& lane_rays, const LaneMask& on, const LaneMask& visible) {
     tell_each(on, [&](Observer& observer, int i) { observer.shadow_ray(ray_of(lane_rays, i), visible[i]); });
 }
@@ -31,7 +35,8 @@ void LaneContext::tell_roulette(const Lanes& q, const LaneMask& plays, const Lan
 void LaneContext::tell_contributions(const ContributionOf<Lanes>& found, const LaneMask& on) {
     tell_each(on, [&](Observer& observer, int i) {
         observer.contribution({found.technique, found.edges[i], found.unweighted.lane(i), found.weight[i],
-                               found.pdf[i], found.other_pdf[i]});
+                               found.pdf[i], found.other_pdf[i], found.borrowed, found.from_light,
+                               found.by_portal});
     });
 }
 

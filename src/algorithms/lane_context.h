@@ -37,6 +37,12 @@ class LaneContext {
         if (is_observed_) tell_edges(lane_rays, on, hits);
         return hits;
     }
+    /// The same beside the paths, whose edges these are not.
+    SurfaceHits intersect_aside(const LaneRays& lane_rays, const LaneMask& on) {
+        rays += popcount(on);
+        if (is_observed_) tell_portal_rays(lane_rays, on);
+        return scene.intersect(lane_rays, on, [] {});
+    }
     LaneMask visible(const LaneRays& lane_rays, const LaneMask& on) {
         rays += popcount(on);
         const LaneMask visible = on && !scene.occluded(lane_rays, on);
@@ -68,6 +74,7 @@ class LaneContext {
 
   private:
     void tell_edges(const LaneRays& rays, const LaneMask& on, const SurfaceHits& hits);
+    void tell_portal_rays(const LaneRays& rays, const LaneMask& on);
     void tell_shadow_rays(const LaneRays& rays, const LaneMask& on, const LaneMask& visible);
     void tell_bounces(const BsdfSampleOf<Lanes>& samples, const LaneMask& on);
     void tell_roulette(const Lanes& q, const LaneMask& plays, const LaneMask& survives);

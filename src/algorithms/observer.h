@@ -26,6 +26,7 @@ struct ContributionOf {
     F other_pdf = 0;          // the same by the other technique
     bool borrowed = false;    // found by another pixel's path, see path_reuse.h
     bool from_light = false;  // found by a path from a light, see light_tracing.h
+    bool by_portal = false;   // found beside the path, over delta surfaces, see portals.h
 };
 using Contribution = ContributionOf<float>;
 
@@ -39,6 +40,8 @@ class Observer {
     virtual void back_at_first() {}
     /// A look from the path's first surface at the second of another pixel's path, see path_reuse.h.
     virtual void reuse_ray(const Ray& /*ray*/, bool /*visible*/) {}
+    /// A ray from the path's first surface to smooth glass, or from there on, see portals.h.
+    virtual void portal_ray(const Ray& /*ray*/) {}
     /// How the path goes on, if it does.
     virtual void bounce(const BsdfSample& /*sample*/) {}
     /// Russian roulette was played, with `q` the probability to end the path here.

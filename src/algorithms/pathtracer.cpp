@@ -7,11 +7,13 @@
 // well ("light_tracing"), through glass and over mirrors to what the camera sees, see light_tracing.h.
 //
 // What paths find from their second surface on may be shared between pixels ("path_reuse"), see path_reuse.h. And at the
-// first surface several lights may be sampled for each path ("light_splitting"), see pilot.h.
+// first surface several lights may be sampled for each path ("light_splitting"), see pilot.h, and directions to smooth
+// glass ("portals"), see portals.h.
 #include "algorithms/direct_light.h"
 #include "algorithms/lane_paths.h"
 #include "algorithms/light_tracing.h"
 #include "algorithms/pilot.h"
+#include "algorithms/portals.h"
 #include "algorithms/russian_roulette.h"
 
 namespace etendue {
@@ -27,6 +29,7 @@ class Pathtracer : public Algorithm {
           reuses_paths_(parameters.get<bool>("path_reuse")),
           may_trace_light_(parameters.get<bool>("light_tracing")),
           splits_light_(parameters.get<bool>("light_splitting")),
+          may_use_portals_(parameters.get<bool>("portals") && mis_of(parameters) != Mis::none),
           roulette_(parameters) {}
 
     bool learns(const Scene& scene) const override { return flies(scene) || light_choice_.learns(scene); }
@@ -36,17 +39,20 @@ class Pathtracer : public Algorithm {
         if (light_choice_.learns(scene) &&
             !light_choice_.prepare(preparation, static_cast<int>(MAX_CAM_PATH_LENGTH), mis_))
             return false;
-        if (flies(scene)) {
-            const auto attempt = [&](SampleQueue& queue, const Together& together) {
-                return estimate_together(scene, queue, together);
-            };
-            const auto pilot = fly(preparation, reuses_paths_, splits_light_, attempt);
-            if (!pilot) return false;
-            if (traces_light(scene) &&
-                !light_tracing_.prepare(preparation, *pilot, MAX_CAM_PATH_LENGTH, light_choice_.kind(), mis_))
-                return false;
-            sharing_ = pilot->sharing, light_samples_ = pilot->light_samples;
-        }
+        by_portals_ = false;
+        if (!flies(scene)) return true;
+        if (may_use_portals(scene)) portals_ = Portals(scene);
+        const auto attempt = [&](SampleQueue& queue, const Together& together) {
+            return estimate_together(scene, queue, together);
+        };
+        const auto pilots = fly(preparation, {reuses_paths_, splits_light_, may_use_portals(scene)}, attempt);
+        if (!pilots) return false;
+        if (traces_light(scene) && !light_tracing_.prepare(preparation, pilots->without_portals,
+                                                           MAX_CAM_PATH_LENGTH, light_choice_.kind(), mis_))
+            return false;
+        // Paths from lights and portals find the same light.
+        const Pilot& pilot = light_tracing_.paths() > 0 ? pilots->without_portals : pilots->best;
+        sharing_ = pilot.sharing, light_samples_ = pilot.light_samples, by_portals_ = pilot.by_portals;
         return true;
     }
 
@@ -54,17 +60,18 @@ class Pathtracer : public Algorithm {
     uint32_t sharing_at_most() const override { return reuses_paths_ ? PathReuse::MOST_PIXELS : 1; }
 
     uint32_t light_samples() const override { return light_samples_; }
+    bool by_portals() const override { return by_portals_; }
     uint32_t light_paths() const override { return light_tracing_.paths(); }
     std::optional<Splat> light_path(Context& context, uint32_t number) const override {
         return light_tracing_.path(context, number);
     }
 
     uint64_t estimate(const Scene& scene, SampleQueue& queue) const override {
-        if (sharing_ == 1 && light_samples_ == 1) {
+        if (sharing_ == 1 && light_samples_ == 1 && !by_portals_) {
             return follow<Paths>(
                 scene, queue, [&](LaneContext& context, Paths& paths) { extend(context, paths, nullptr); });
         }
-        const Trial trial = estimate_together(scene, queue, {sharing_ > 1, light_samples_});
+        const Trial trial = estimate_together(scene, queue, {sharing_ > 1, light_samples_, by_portals_});
         for (size_t i = 0; i < trial.estimates.size(); ++i) queue.estimated(i, trial.estimates[i].shared);
         return trial.rays + trial.rays_of_sharing;
     }
@@ -77,11 +84,17 @@ class Pathtracer : public Algorithm {
         all.push_back(PathReuse::parameter());
         all.push_back(LightTracing::parameter());
         all.push_back(light_splitting_parameter());
+        all.push_back(Portals::parameter());
         return all;
     }
 
   private:
-    bool flies(const Scene& scene) const { return reuses_paths_ || splits_light_ || traces_light(scene); }
+    bool flies(const Scene& scene) const {
+        return reuses_paths_ || splits_light_ || traces_light(scene) || may_use_portals(scene);
+    }
+    bool may_use_portals(const Scene& scene) const {
+        return may_use_portals_ && LightTracing::may_pay(scene);
+    }
     bool traces_light(const Scene& scene) const { return may_trace_light_ && LightTracing::may_pay(scene); }
 
     struct Paths : LanePaths {
@@ -97,6 +110,9 @@ class Pathtracer : public Algorithm {
         Lanes scale = 1, survival = 1;
         // Of those that light may be traced along, see LightTracing::CameraPath.
         Lanes film_density = 0, cos_g = 1, area_density = 1;
+        // Of those that have gone over delta surfaces since their first: how they left that, by the BSDF and by portals; 0: these
+        // could not.
+        Lanes first_pdf = 0, portal_pdf = 0;
     };
 
     /// The paths of a queue, of which something is left to do once all have ended.
@@ -116,8 +132,10 @@ class Pathtracer : public Algorithm {
             [&](Paths& paths) { extend(context, paths, &queued); },
             [&](size_t sample, const vec3& radiance) { reuse.end(sample, radiance); });
         Trial trial;
+        if (together.by_portals) trial.portal_gains.resize(firsts.count());
         firsts.for_each([&](size_t first, const LaneMask& on, const SurfaceHits& hits) {
             if (together.light_samples > 1) light_first(context, queued, first, on, hits);
+            if (together.by_portals) light_by_portals(context, queued, first, on, hits, trial.portal_gains);
             const uint64_t before = context.rays;
             if (together.shares) reuse.connect(context, first, on, hits);
             trial.rays_of_sharing += context.rays - before;
@@ -144,6 +162,20 @@ class Pathtracer : public Algorithm {
             radiance += light_over(context, connection, on);
         }
         for_lanes(on, [&](int i) { queued.reuse.add_own(first + i, radiance.lane(i)); });
+    }
+
+    /// The same through glass and over mirrors.
+    void light_by_portals(LaneContext& context, Queued& queued, size_t first, const LaneMask& on,
+                          const SurfaceHits& hits, std::vector<vec3>& gains) const {
+        for_lanes(on, [&](int i) {
+            const CameraSample& sample = queued.firsts.sample(first + i);
+            context.start_at_first(i, sample, Sampler::part(sample.numbers, 0, 1));
+        });
+        const Portals::Light light = portals_.light(context, hits, on, MAX_CAM_PATH_LENGTH, mis_);
+        for_lanes(on, [&](int i) {
+            queued.reuse.add_own(first + i, light.radiance.lane(i));
+            gains[first + i] = light.gain.lane(i);
+        });
     }
 
     /// By an edge. `queued`: null where nothing is left to do once they have ended.
@@ -184,6 +216,13 @@ class Pathtracer : public Algorithm {
                 const Lanes weight = balance_heuristic(paths.film_density, density);
                 found.weight = select(could_be_traced, weight, found.weight);
             }
+            const LaneMask could_be_by_portal = hits.is_light && !is_first && paths.portal_pdf > 0;
+            if (any(could_be_by_portal)) {
+                found.pdf = select(could_be_by_portal, paths.first_pdf, found.pdf);
+                found.other_pdf = select(could_be_by_portal, paths.portal_pdf, found.other_pdf);
+                const Lanes weight = bsdf_sampling_weight(mis_, paths.first_pdf, paths.portal_pdf);
+                found.weight = select(could_be_by_portal, weight, found.weight);
+            }
             paths.radiance += context.light(found, hits.is_light);
         }
         LaneMask goes_on = hits.valid && paths.edges < MAX_CAM_PATH_LENGTH;
@@ -209,6 +248,7 @@ class Pathtracer : public Algorithm {
         goes_on = roulette_.survives(context, paths.throughput, paths.eta_scale * paths.scale, paths.edges,
                                      goes_on);
         if (light_tracing_.paths() > 0) mark_traceable(paths, hits, is_first, bounce, learned);
+        if (queued && queued->together.by_portals) mark_portals(paths, hits, on);
         if (reuse) {
             const Lanes survival = max_component(paths.throughput) / max_component(before);
             paths.survival = select(is_first, survival, paths.survival);
@@ -272,6 +312,16 @@ class Pathtracer : public Algorithm {
         paths.area_density = lanes_of(area_densities);
     }
 
+    /// Which paths have gone from their first surface over delta surfaces alone, so that portals may have led there.
+    void mark_portals(Paths& paths, const SurfaceHits& hits, const LaneMask& on) const {
+        const LaneMask is_second = paths.edges == 2, is_delta = hits.valid && hits.is_delta;
+        const Lanes pdfs =
+            portals_.pdfs(on && is_second && is_delta && !paths.prev_delta, paths.prev_position, hits);
+        paths.first_pdf = select(is_second, paths.prev_pdf, paths.first_pdf);
+        paths.portal_pdf =
+            select(is_second, pdfs, select(is_delta && paths.edges > 2, paths.portal_pdf, Lanes(0)));
+    }
+
     /// Probabilities with which the lights that were found, and what of them, would have been chosen on purpose; 0 for the
     /// other lanes.
     Lanes choice_pmfs(const LaneContext& context, const Paths& paths, const SurfaceHits& hits,
@@ -288,9 +338,11 @@ class Pathtracer : public Algorithm {
     const float MAX_CAM_PATH_LENGTH;
     LightChoice light_choice_;
     const Mis mis_;
-    const bool reuses_paths_, may_trace_light_, splits_light_;
+    const bool reuses_paths_, may_trace_light_, splits_light_, may_use_portals_;
     LightTracing light_tracing_;
+    Portals portals_;
     uint32_t sharing_ = 1, light_samples_ = 1;
+    bool by_portals_ = false;
     const RussianRoulette roulette_;
 };
 

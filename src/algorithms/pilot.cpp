@@ -60,6 +60,7 @@ class GroupQueue : public SampleQueue {
 /// Of one pixel: the means of its blocks.
 struct PixelMeans {
     std::array<vec3, BLOCKS> alone{}, shared{};
+    vec3 portal_gain{0};  // of a sample
 };
 
 /// What the trials of all groups tell.
@@ -74,6 +75,8 @@ struct Measured {
                 const size_t block = i / PIXELS / SAMPLES;
                 group[i % PIXELS].alone[block] += trial.estimates[i].alone / float{SAMPLES};
                 group[i % PIXELS].shared[block] += trial.estimates[i].shared / float{SAMPLES};
+                if (!trial.portal_gains.empty())
+                    group[i % PIXELS].portal_gain += trial.portal_gains[i] / float{SAMPLES * BLOCKS};
             }
             rays += static_cast<float>(trial.rays) / ALL_SAMPLES;
             rays_of_sharing += static_cast<float>(trial.rays_of_sharing) / ALL_SAMPLES;
@@ -111,6 +114,15 @@ float variance_of(const Measured& measured, const Scales& scales,
     return std::accumulate(variances.begin(), variances.end(), 0.f);
 }
 
+/// What portals take away of the variances of all pixels.
+float gain_of_portals(const Measured& measured, const Scales& scales) {
+    float gain = 0;
+    for (size_t i = 0; i < measured.pixels.size(); ++i) {
+        gain += dot(measured.pixels[i].portal_gain / scales.squares[i], vec3(2.f / SAMPLES));
+    }
+    return gain;
+}
+
 /// Of a variance the part that `n` times as many samples of something would bring down to its nth.
 float part_of(float variance, float variance_with, float n) {
     return std::max(variance - variance_with, 0.f) / (1 - 1 / n);
@@ -118,29 +130,41 @@ float part_of(float variance, float variance_with, float n) {
 
 }  // namespace
 
-std::optional<Pilot> fly(const Preparation& preparation, bool may_share, bool may_split, const Try& attempt) {
-    const uint32_t most_pixels = may_share ? PathReuse::MOST_PIXELS : 1,
-                   most_lights = may_split ? MOST_LIGHT_SAMPLES : 1;
-    // Of each group with one light and, after all those, with as many as there may be.
-    std::vector<Trial> trials(may_split ? 2 * GROUPS : GROUPS);
+std::optional<Pilots> fly(const Preparation& preparation, const Allowed& allowed, const Try& attempt) {
+    const uint32_t most_pixels = allowed.sharing ? PathReuse::MOST_PIXELS : 1,
+                   most_lights = allowed.light_samples ? MOST_LIGHT_SAMPLES : 1;
+    // All groups by each of these: as a path would by itself, with several lights, by portals.
+    const std::array<Together, 3> ways{Together{allowed.sharing, 1, false},
+                                       {allowed.sharing, most_lights, false},
+                                       {allowed.sharing, 1, allowed.portals}};
+    std::vector<uint32_t> tried{0};
+    if (allowed.light_samples) tried.push_back(1);
+    if (allowed.portals) tried.push_back(2);
+    std::vector<Trial> trials(tried.size() * GROUPS);
     const bool complete = preparation.for_each(static_cast<uint32_t>(trials.size()), [&](uint32_t i) {
         GroupQueue queue(preparation.camera, i % GROUPS);
-        trials[i] = attempt(queue, {may_share, i < GROUPS ? 1 : most_lights});
+        trials[i] = attempt(queue, ways[tried[i / GROUPS]]);
     });
     if (!complete) return std::nullopt;
     const std::span<const Trial> all = trials;
-    const Measured one(all.first(GROUPS)), several(all.last(GROUPS));
+    const auto measured = [&](uint32_t way) {
+        const auto at = std::ranges::find(tried, way);
+        return Measured(all.subspan(at == tried.end() ? 0 : (at - tried.begin()) * GROUPS, GROUPS));
+    };
+    const Measured one = measured(0), several = measured(1), portals = measured(2);
     const Scales scales(several);
     const float one_alone = variance_of(one, scales, &PixelMeans::alone),
                 one_shared = variance_of(one, scales, &PixelMeans::shared),
                 several_alone = variance_of(several, scales, &PixelMeans::alone),
-                several_shared = variance_of(several, scales, &PixelMeans::shared);
+                several_shared = variance_of(several, scales, &PixelMeans::shared),
+                portals_shared = variance_of(portals, scales, &PixelMeans::shared);
 
-    // As in pilot.h.
+    // As in pilot.h; d is what portals take away, which has noise that is too rare for trials without them to tell.
     const float b =
         (part_of(one_alone, one_shared, PIXELS) + part_of(several_alone, several_shared, PIXELS)) / 2;
     const float c = part_of(one_shared, several_shared, MOST_LIGHT_SAMPLES);
-    const float a = std::max(one_shared - b / PIXELS - c, 0.f);
+    const float d = gain_of_portals(portals, scales);
+    const float a = std::max(portals_shared - b / PIXELS - c, 0.f);
     const auto variance = [&](const Pilot& of) {
         return a + b / static_cast<float>(of.sharing) + c / static_cast<float>(of.light_samples);
     };
@@ -152,22 +176,29 @@ std::optional<Pilot> fly(const Preparation& preparation, bool may_share, bool ma
         return static_cast<float>(of.light_samples - 1) / (MOST_LIGHT_SAMPLES - 1) *
                (several.rays - one.rays);
     };
-    const auto effort = [&](const Pilot& of) {
-        const bool comes_back = of.sharing > 1 || of.light_samples > 1;
-        return variance(of) *
-               (one.rays + (comes_back ? COME_BACK : 0) + PARTNER * to_partners(of) + LIGHT * to_lights(of));
+    const auto to_portals = [&](const Pilot& of) { return of.by_portals ? portals.rays - one.rays : 0; };
+    const auto time = [&](const Pilot& of) {
+        const bool comes_back = of.sharing > 1 || of.light_samples > 1 || of.by_portals;
+        return one.rays + (comes_back ? COME_BACK : 0) + PARTNER * to_partners(of) +
+               LIGHT * (to_lights(of) + to_portals(of));
     };
-    Pilot best;
-    for (uint32_t pixels = 1; pixels <= most_pixels; pixels *= 2) {
-        for (uint32_t lights = 1; lights <= most_lights; lights *= 2) {
-            if (effort({pixels, lights}) < effort(best)) best = {pixels, lights};
+    const auto effort = [&](const Pilot& of) { return variance(of) * time(of); };
+    const auto best_of = [&](bool by_portals) {
+        Pilot best{1, 1, by_portals};
+        for (uint32_t pixels = 1; pixels <= most_pixels; pixels *= 2) {
+            for (uint32_t lights = 1; lights <= most_lights; lights *= 2) {
+                const Pilot other{pixels, lights, by_portals};
+                if (effort(other) < effort(best)) best = other;
+            }
         }
-    }
-    best.luminance = luminance(scales.mean);
-    // The sums are of squared differences of two means of so many samples, over three channels.
-    best.relative_variance = variance(best) * (SAMPLES / 2.f / 3 / static_cast<float>(one.pixels.size()));
-    best.rays = one.rays + to_partners(best) + to_lights(best);
-    return best;
+        best.luminance = luminance(scales.mean);
+        // The sums are of squared differences of two means of so many samples, over three channels.
+        best.relative_variance = variance(best) * (SAMPLES / 2.f / 3 / static_cast<float>(one.pixels.size()));
+        best.rays = one.rays + to_partners(best) + to_lights(best) + to_portals(best);
+        return best;
+    };
+    const Pilot without = best_of(false), with = best_of(allowed.portals);
+    return Pilots{effort(with) < (variance(without) + d) * time(without) ? with : without, without};
 }
 
 }  // namespace etendue

@@ -40,6 +40,8 @@ void bind_replay(nb::module_& m) {
         .def_ro("weight", &Contribution::weight, "Of the technique, by multiple importance sampling.")
         .def_ro("borrowed", &Contribution::borrowed, "It was found by another pixel's path, and shared.")
         .def_ro("from_light", &Contribution::from_light, "It was found by a path from a light.")
+        .def_ro("by_portal", &Contribution::by_portal,
+                "It was found beside the path, through glass or over mirrors.")
         .def_ro("pdf", &Contribution::pdf,
                 "Of the last direction by this technique, in solid angle; 0 where it has no density. Of "
                 "light that "
@@ -120,6 +122,9 @@ void bind_replay(nb::module_& m) {
         .def_ro("vertices", &PathRecord::vertices)
         .def_ro("from_lights", &PathRecord::from_lights,
                 "Contributions that paths from lights brought to this sample.")
+        .def_ro("by_portals", &PathRecord::by_portals,
+                "Contributions that were found beside the path, from its first surface through glass and "
+                "over mirrors.")
         .def_ro("borrowed", &PathRecord::borrowed,
                 "Contributions that other pixels' paths found and shared with this one.")
         .def_prop_ro(

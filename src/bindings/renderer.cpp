@@ -240,6 +240,9 @@ void bind_renderer(nb::module_& m) {
             "How many lights are sampled at the first surface of each path, by estimators that sample "
             "lights.")
         .def_prop_ro(
+            "by_portals", [](Renderer& r) { return r.algorithm().by_portals(); },
+            "Whether directions to smooth glass and mirrors are sampled there too.")
+        .def_prop_ro(
             "light_paths", [](Renderer& r) { return r.algorithm().light_paths(); },
             "How many paths from lights belong to a sample of every pixel; 0: none.")
         .def_prop_ro("error", &Renderer::error,

@@ -15,6 +15,7 @@ class Recorder : public Observer {
   public:
     void edge(const Ray& ray, const SurfaceHit&) override { rays.push_back({ray, false}); }
     void shadow_ray(const Ray& ray, bool) override { rays.push_back({ray, true}); }
+    void portal_ray(const Ray& ray) override { rays.push_back({ray, false}); }
     void reuse_ray(const Ray& ray, bool) override { rays.push_back({ray, true}); }
 
     std::vector<TracedRay> rays;

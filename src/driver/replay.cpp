@@ -25,10 +25,9 @@ class Recorder : public Observer {
         if (survived) throughput_ /= 1 - q;
     }
     void contribution(const Contribution& found) override {
-        if (found.borrowed || found.from_light) {
-            (found.borrowed ? path.borrowed : path.from_lights).push_back(found);
-            return;
-        }
+        if (found.borrowed) return path.borrowed.push_back(found);
+        if (found.from_light) return path.from_lights.push_back(found);
+        if (found.by_portal) return path.by_portals.push_back(found);
         // It is told late where it had to be shared first. Light is sampled from one vertex before it.
         const auto end = static_cast<size_t>(found.edges);
         const size_t vertex = found.technique == Technique::light_sampling ? end - 1 : end;

@@ -34,6 +34,7 @@ struct PathRecord {
     std::vector<PathVertex> vertices;
     std::vector<Contribution> borrowed;     // that other pixels' paths found and shared
     std::vector<Contribution> from_lights;  // that paths from lights brought
+    std::vector<Contribution> by_portals;   // that were found beside the path, through glass and over mirrors
     vec3 radiance{0};                       // the estimate
 };
 

@@ -126,6 +126,7 @@ class TestResults:
             "path_reuse": [True, None],
             "light_tracing": [True, None],
             "light_splitting": [True, None],
+            "portals": [True, None],
         }
 
     def test_images_are_those_of_ordinary_renders(self, lit: Path) -> None:

@@ -39,6 +39,7 @@ GUIDE = "tests/estimators/test_light_guide.py"
 REUSE = ("tests/estimators/test_path_reuse.py", "-k", "mean")
 TRACING = ("tests/estimators/test_light_tracing.py", "-k", "mean or spreads")
 SPLITTING = ("tests/estimators/test_light_splitting.py", "-k", "mean or noise")
+PORTALS = ("tests/estimators/test_portals.py", "-k", "mean or clean")
 SAMPLER = "tests/statistics/test_sampler.py"
 
 
@@ -137,6 +138,34 @@ MUTANTS = (
         "Sampler::part(sample.numbers, k, samples)",
         "Sampler::part(sample.numbers, 0, samples)",
         SPLITTING,
+    ),
+    Mutant(
+        "light through windows found twice",
+        "algorithms/portals.cpp",
+        "light_sampling_weight(mis, found.pdf, found.other_pdf)",
+        "Lanes(1)",
+        PORTALS,
+    ),
+    Mutant(
+        "windows weighted by another density than they are sampled by",
+        "algorithms/portals.cpp",
+        "sqr(hits.found.distance[i]) / cos_g[i]",
+        "sqr(hits.found.distance[i])",
+        PORTALS,
+    ),
+    Mutant(
+        "light through windows found behind what hides them",
+        "algorithms/portals.cpp",
+        "mask_of(is_meant)",
+        "at.valid",
+        PORTALS,
+    ),
+    Mutant(
+        "windows chosen by area without asking how likely",
+        "algorithms/portals.cpp",
+        "lanes_of(pmfs) / facet.area",
+        "1 / facet.area",
+        PORTALS,
     ),
     Mutant(
         "paths shared with pixels that do not see them",
