@@ -11,6 +11,7 @@ import pytest
 from scipy import stats
 
 from .. import builds
+from . import test_light_splitting, test_portals
 from .test_invariance import SIZE, cornell
 from .test_light_tracing import PLACES, render
 from .worlds import Estimator
@@ -29,6 +30,17 @@ def caustics() -> np.ndarray:
     """Renders in which light is traced from the lights."""
     places = [make() for make in PLACES.values()]
     return np.array([render(place, True, 8, sampler="sobol", path_reuse=True).mean() for place in places])
+
+
+def many_lights() -> np.ndarray:
+    """Renders in which several lights, or directions to windows, are sampled at first surfaces."""
+    renderers = [
+        test_light_splitting.renderer(test_light_splitting.lamps(), True),
+        test_portals.renderer(test_portals.windows(), True, path_reuse=True),
+    ]
+    for renderer in renderers:
+        renderer.render(8)
+    return np.array([renderer.mean() for renderer in renderers])
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +72,7 @@ def images_by(core: Path, home: Path, what: str = "images") -> np.ndarray:
 def test_another_width_of_registers_gives_the_same_picture(portable: Path, tmp_path: Path) -> None:
     np.testing.assert_array_equal(images_by(portable, tmp_path), images())
     np.testing.assert_array_equal(images_by(portable, tmp_path, "caustics"), caustics())
+    np.testing.assert_array_equal(images_by(portable, tmp_path, "many_lights"), many_lights())
 
 
 @pytest.mark.slow

@@ -19,7 +19,9 @@ HERE = Path(__file__).parent
 FAST = (
     "tests/estimators/test_analytic.py",
     "tests/estimators/test_invariance.py",
+    "tests/estimators/test_light_splitting.py",
     "tests/estimators/test_light_tracing.py",
+    "tests/estimators/test_portals.py",
     "tests/statistics/test_bsdf_edges.py",
 )
 CHOSEN = (
