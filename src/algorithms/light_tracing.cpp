@@ -122,7 +122,7 @@ std::optional<Splat> LightTracing::path(Context& context, uint32_t number) const
     return Splat{found.film, contribution};
 }
 
-bool LightTracing::prepare(const Preparation& preparation, const Pilot& pilot, float max_edges,
+bool LightTracing::prepare(const Preparation& preparation, const Pilots& pilots, float max_edges,
                            LightSampler::Kind kind, Mis mis) {
     scene_ = &preparation.scene, camera_ = &preparation.camera;
     constexpr float LONGEST = 20;
@@ -140,6 +140,7 @@ bool LightTracing::prepare(const Preparation& preparation, const Pilot& pilot, f
         if (round + 1 < ROUNDS) learn(all);
     }
 
+    const Pilot& pilot = pilots.without_portals;
     // Measured on `pots`: the time of a light path's ray over that of a camera path's, of which many are followed at once.
     constexpr float RAY = 1.5f;
     // The variance of a sample of a pixel, relative to the image's, with M paths: of what both can find it is
@@ -162,13 +163,15 @@ bool LightTracing::prepare(const Preparation& preparation, const Pilot& pilot, f
     // Trials are few, so a small gain is as good as none, and the fewest paths with nearly the least effort are best: the
     // pilot leaves the noisiest pixels out.
     constexpr double NEARLY = 1.1;
+    // On `sibenik`, where portals are better, paths from lights gain less than this, on `pots`, where portals are worse, more.
+    const double worthwhile = pilots.best.by_portals ? 1.5 : NEARLY;
     constexpr uint32_t MOST = 64;  // in 64ths of the pixels
     const auto paths = [&](uint32_t share) {
         return std::max(std::floor(static_cast<float>(share) / 64 * pixels), 1.f);
     };
     double least = effort(0);
     for (uint32_t share = 1; share <= MOST; share *= 2) least = std::min(least, effort(paths(share)));
-    if (effort(0) <= NEARLY * least) return true;
+    if (effort(0) <= worthwhile * least) return true;
     uint32_t share = 1;
     while (effort(paths(share)) > NEARLY * least) share *= 2;
     paths_ = static_cast<uint32_t>(paths(share));

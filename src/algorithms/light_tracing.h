@@ -45,9 +45,10 @@ class LightTracing {
     /// Whether a scene has what light can be traced through.
     static bool may_pay(const Scene& scene);
 
-    /// Finds out how many paths pay, if any; until then none is traced. False where it was cut short.
-    bool prepare(const Preparation& preparation, const Pilot& pilot, float max_edges, LightSampler::Kind kind,
-                 Mis mis);
+    /// Finds out how many paths pay, if any; until then none is traced. False where it was cut short. Where portals pay, which
+    /// find the same light, paths must pay much more than a little.
+    bool prepare(const Preparation& preparation, const Pilots& pilots, float max_edges,
+                 LightSampler::Kind kind, Mis mis);
 
     uint32_t paths() const { return paths_; }
     std::optional<Splat> path(Context& context, uint32_t number) const;

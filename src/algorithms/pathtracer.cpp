@@ -47,8 +47,8 @@ class Pathtracer : public Algorithm {
         };
         const auto pilots = fly(preparation, {reuses_paths_, splits_light_, may_use_portals(scene)}, attempt);
         if (!pilots) return false;
-        if (traces_light(scene) && !light_tracing_.prepare(preparation, pilots->without_portals,
-                                                           MAX_CAM_PATH_LENGTH, light_choice_.kind(), mis_))
+        if (traces_light(scene) &&
+            !light_tracing_.prepare(preparation, *pilots, MAX_CAM_PATH_LENGTH, light_choice_.kind(), mis_))
             return false;
         // Paths from lights and portals find the same light.
         const Pilot& pilot = light_tracing_.paths() > 0 ? pilots->without_portals : pilots->best;
