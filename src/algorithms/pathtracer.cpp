@@ -53,6 +53,7 @@ class Pathtracer : public Algorithm {
         // Paths from lights and portals find the same light.
         const Pilot& pilot = light_tracing_.paths() > 0 ? pilots->without_portals : pilots->best;
         sharing_ = pilot.sharing, light_samples_ = pilot.light_samples, by_portals_ = pilot.by_portals;
+        if (!by_portals_) portals_ = {};
         return true;
     }
 

@@ -23,8 +23,7 @@ class Portals {
     static Parameter parameter() {
         return {"portals",
                 "whether directions to smooth glass and mirrors are sampled at the first surface of each "
-                "path, where that "
-                "pays: light through windows",
+                "path, where that pays: light through windows",
                 true,
                 0,
                 0,
@@ -35,8 +34,6 @@ class Portals {
     /// All delta surfaces of a scene.
     explicit Portals(const Scene& scene);
 
-    bool empty() const { return tree_.empty(); }
-
     /// Of a sample.
     struct Light {
         LaneVec3 radiance{0};
@@ -45,7 +42,7 @@ class Portals {
         LaneVec3 gain{0};
     };
     /// What arrives over delta surfaces at the vertices that are `on`, whose paths have one edge, by one sample for each from the
-    /// context's numbers. Paths end with `max_edges` edges.
+    /// context's numbers, but those of vertex 1. Paths end with `max_edges` edges.
     Light light(LaneContext& context, const SurfaceHits& hits, const LaneMask& on, float max_edges,
                 Mis mis) const;
 

@@ -10,7 +10,7 @@ from scipy import stats
 from etendue import _core
 from etendue.models import mesh as meshes
 
-from .worlds import diffuse, ground, lamp, looking, scene
+from .worlds import check_pieces, diffuse, ground, lamp, looking, scene
 
 SEEDS, SPP, SIDE = 48, 16, 32
 
@@ -90,19 +90,8 @@ def test_lights_are_split_where_it_pays() -> None:
 
 @pytest.mark.parametrize("sampler", _core.samplers())
 def test_pieces_are_the_whole(sampler: str) -> None:
-    """On any number of threads, in pieces, late, and path by path."""
     place = lamps()
-    whole = renderer(place, True, sampler=sampler, seed=3, threads=2)
-    whole.render(20)
-    pieces = renderer(place, True, sampler=sampler, seed=3, threads=1)
-    for stride in (16, 4):
-        pieces.render_coarse(stride)
-    for samples in (1, 7, 20):
-        pieces.render(samples)
-    np.testing.assert_array_equal(whole.mean(), pieces.mean())
-    late = renderer(place, True, sampler=sampler, seed=3, first_sample=19)
-    late.render(1)
-    assert list(_core.replay(whole, 5, 20, 19).radiance) == late.mean()[20, 5].tolist()
+    check_pieces(lambda **options: renderer(place, True, sampler=sampler, **options))
 
 
 def test_a_replay_tells_of_each_light() -> None:

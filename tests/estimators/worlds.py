@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import ChainMap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -106,3 +106,20 @@ def estimators(roulette: tuple[float, ...] = (0, 1)) -> Iterator[Estimator]:
 def full_transport(roulette: tuple[float, ...] = (0, 1)) -> list[Estimator]:
     """Those whose paths may be of any length."""
     return [e for e in estimators(roulette) if e.longest_path is None]
+
+
+def check_pieces(make: Callable[..., _core.Renderer]) -> None:
+    """That a picture is the same on any number of threads, in pieces, late, and path by path.
+
+    `make` takes the options of a renderer; the picture is of 32 x 32.
+    """
+    whole, pieces = make(seed=3, threads=2), make(seed=3, threads=1)
+    whole.render(20)
+    for stride in (16, 4):
+        pieces.render_coarse(stride)
+    for samples in (1, 7, 20):
+        pieces.render(samples)
+    np.testing.assert_array_equal(whole.mean(), pieces.mean())
+    late = make(seed=3, first_sample=19)
+    late.render(1)
+    assert list(_core.replay(whole, 5, 20, 19).radiance) == late.mean()[20, 5].tolist()
