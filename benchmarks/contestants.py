@@ -17,14 +17,14 @@ ROOT = Path(__file__).resolve().parent.parent
 #: made by `python -m benchmarks install-peers`
 PEERS = ROOT / "build" / "benchmarks" / "peers"
 
+_ALONE: dict[str, Any] = dict.fromkeys(("path_reuse", "light_tracing", "light_splitting", "portals"), False)
 #: by name: the module in renderers/, and its options
 CONTESTANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "etendue": ("etendue", {}),
     "etendue-1-thread": ("etendue", {"threads": 1}),
-    "etendue-alone": (
-        "etendue",
-        dict.fromkeys(("path_reuse", "light_tracing", "light_splitting", "portals"), False),
-    ),
+    "etendue-alone": ("etendue", _ALONE),
+    # The estimator that Mitsuba has: lights are chosen from everywhere alike.
+    "etendue-plain": ("etendue", _ALONE | {"light_choice": "power"}),
     "mitsuba-llvm": ("mitsuba", {"variant": "llvm_ad_rgb"}),
     "mitsuba-scalar": ("mitsuba", {"variant": "scalar_rgb"}),
     "cycles": ("cycles", {}),

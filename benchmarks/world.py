@@ -53,6 +53,14 @@ class View:
     focal_depth: float = 1.0
 
 
+def linear(texture: NDArray[Any]) -> NDArray[np.float32]:
+    """Of a texture of a World, as it is or out of sRGB (IEC 61966-2-1)."""
+    if texture.dtype != np.uint8:
+        return texture.astype(np.float32)
+    c = texture / np.float32(255)
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
 @dataclass
 class World:
     """A scene. `textures` are (h, w, 3), uint8 in sRGB or float32 linear; `sky` (h, w, 3), linear radiance."""

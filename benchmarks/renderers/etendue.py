@@ -48,7 +48,7 @@ class Renderer:
         self.parameters: dict[str, Any] = {"max_cam_path_length": world.edges}
         if not options.get("as_users"):
             self.parameters["rr_threshold"] = 0.0
-        for name in ("path_reuse", "light_tracing", "light_splitting", "portals"):
+        for name in ("path_reuse", "light_tracing", "light_splitting", "portals", "light_choice"):
             if name in options:
                 self.parameters[name] = options[name]
 

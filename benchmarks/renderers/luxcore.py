@@ -9,7 +9,7 @@ import numpy as np
 import pyluxcore
 from numpy.typing import NDArray
 
-from ..world import Material, World
+from ..world import Material, World, linear
 
 
 class Renderer:
@@ -172,15 +172,15 @@ def _property(name: str, value: Any) -> Any:
 
 def _define_image(scene: Any, name: str, pixels: NDArray[Any]) -> None:
     height, width = pixels.shape[:2]
-    linear = pixels.astype(np.float32)
-    scene.DefineImageMap(name, np.ascontiguousarray(linear).ravel(), 1.0, 3, width, height)
+    values = np.ascontiguousarray(pixels, np.float32).ravel()
+    scene.DefineImageMap(name, values, 1.0, 3, width, height)
 
 
 def _define_texture(scene: Any, name: str, pixels: NDArray[Any]) -> None:
-    is_srgb = pixels.dtype == np.uint8
-    _define_image(scene, f"{name}_pixels", pixels / 255 if is_srgb else pixels)
+    # Linear: of an image that is known by name it takes the gamma that it was defined with, and no other.
+    _define_image(scene, f"{name}_pixels", linear(pixels))
     properties = pyluxcore.Properties()
     properties.Set(_property(f"scene.textures.{name}.type", "imagemap"))
     properties.Set(_property(f"scene.textures.{name}.file", f"{name}_pixels"))
-    properties.Set(_property(f"scene.textures.{name}.gamma", 2.2 if is_srgb else 1.0))
+    properties.Set(_property(f"scene.textures.{name}.gamma", 1.0))
     scene.Parse(properties)

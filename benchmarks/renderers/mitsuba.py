@@ -11,7 +11,7 @@ import mitsuba as mi
 import numpy as np
 from numpy.typing import NDArray
 
-from ..world import Material, Mesh, World
+from ..world import Material, Mesh, World, linear
 
 # Étendue's sky has phi = 0 along +x, Mitsuba's along -z.
 _SKY_TO_WORLD = [[0, 0, -1, 0], [0, 1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]]
@@ -49,7 +49,13 @@ class Renderer:
         self._textures = world.textures
         self._bsdfs = [mi.load_dict(self._bsdf(material)) for material in world.materials]
         for i, mesh in enumerate(world.meshes):
-            scene[f"mesh{i}"] = self._mesh(i, mesh, world.materials[mesh.material])
+            material = world.materials[mesh.material]
+            # It samples a textured lamp by its texture, and takes it that no two places of a mesh share one. In pieces,
+            # which get as many samples together as the whole, such lamps are right.
+            parts = _islands(mesh) if material.radiance > 0 and _emission(material) >= 0 else [mesh]
+            areas = [_area(part) for part in parts]
+            for k, part in enumerate(parts):
+                scene[f"mesh{i}_{k}"] = self._mesh(f"mesh{i}_{k}", part, material, areas[k] / sum(areas))
         if world.sky is not None:
             to_world = mi.ScalarTransform4f(np.array(_SKY_TO_WORLD, float))
             scene["sky"] = {"type": "envmap", "bitmap": mi.Bitmap(_sky(world.sky)), "to_world": to_world}
@@ -85,8 +91,7 @@ class Renderer:
             return _rgb(np.array(colour) * scale)
         pixels = self._textures[texture]
         if scale != 1:
-            linear = pixels if pixels.dtype != np.uint8 else _decoded(pixels)
-            pixels = (linear * scale).astype(np.float32)
+            pixels = linear(pixels) * np.float32(scale)
         raw = pixels.dtype != np.uint8
         return {"type": "bitmap", "bitmap": mi.Bitmap(np.ascontiguousarray(pixels)), "raw": raw}
 
@@ -116,17 +121,18 @@ class Renderer:
                 del lobe["distribution"], lobe["alpha"]
         return {"type": "twosided", "bsdf": lobe}
 
-    def _mesh(self, i: int, mesh: Mesh, material: Material) -> Any:
+    def _mesh(self, name: str, mesh: Mesh, material: Material, share: float) -> Any:
         properties = mi.Properties()
         properties["bsdf"] = self._bsdfs[mesh.material]
         if material.radiance > 0:
-            texture = material.emission_texture if material.emission_texture >= 0 else material.albedo_texture
-            radiance = self._colour(material.albedo, texture, material.radiance)
-            properties["emitter"] = mi.load_dict({"type": "area", "radiance": radiance})
+            radiance = self._colour(material.albedo, _emission(material), material.radiance)
+            properties["emitter"] = mi.load_dict(
+                {"type": "area", "radiance": radiance, "sampling_weight": share}
+            )
         if mesh.normals is None:
             properties["face_normals"] = True
         made = mi.Mesh(
-            f"mesh{i}",
+            name,
             len(mesh.vertices),
             len(mesh.triangles),
             has_vertex_normals=mesh.normals is not None,
@@ -150,9 +156,36 @@ class Renderer:
         return np.array(mi.render(self.scene, spp=spp, seed=1 + 1_000_003 * seed), dtype=np.float32)
 
 
-def _decoded(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
-    c = pixels.astype(np.float32) / 255
-    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).astype(np.float32)
+def _emission(material: Material) -> int:
+    """The texture that its radiance is multiplied by, or -1."""
+    return material.emission_texture if material.emission_texture >= 0 else material.albedo_texture
+
+
+def _area(mesh: Mesh) -> float:
+    a, b, c = np.moveaxis(mesh.vertices[mesh.triangles].astype(float), 1, 0)
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+
+def _islands(mesh: Mesh) -> list[Mesh]:
+    """The parts that touch nowhere, each a mesh of its own."""
+    _, places = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    triangles = places.reshape(-1)[mesh.triangles]
+    # Of each place the lowest that is known to be connected with it.
+    lowest = np.arange(triangles.max() + 1)
+    while True:
+        before = lowest.copy()
+        np.minimum.at(lowest, triangles, lowest[triangles].min(1, keepdims=True))
+        if np.array_equal(lowest, before):
+            break
+    islands = lowest[triangles[:, 0]]
+    parts = []
+    for island in np.unique(islands):
+        own, corners = np.unique(mesh.triangles[islands == island], return_inverse=True)
+        normals, uvs = (None if array is None else array[own] for array in (mesh.normals, mesh.uvs))
+        parts.append(
+            Mesh(mesh.vertices[own], corners.reshape(-1, 3).astype(np.uint32), normals, uvs, mesh.material)
+        )
+    return parts
 
 
 def _sky(pixels: NDArray[np.float32]) -> NDArray[np.float32]:

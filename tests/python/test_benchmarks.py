@@ -14,7 +14,9 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.compare import EPSILON, rel_mse  # noqa: E402
 from benchmarks.renderers import etendue  # noqa: E402
-from benchmarks.world import Material, Mesh, View, World  # noqa: E402
+from benchmarks.world import Material, Mesh, View, World, linear  # noqa: E402
+
+from etendue.display import srgb_to_linear  # noqa: E402
 
 
 def world() -> World:
@@ -55,6 +57,13 @@ def test_a_world_survives_its_file(tmp_path: Path) -> None:
     assert (read.materials, read.view, read.edges) == (written.materials, written.view, written.edges)
     image = etendue.Renderer(read, 16, 16, 1, {}).render(2, 3)
     assert np.array_equal(image, etendue.Renderer(written, 16, 16, 1, {}).render(2, 3))
+
+
+def test_textures_are_decoded_as_etendue_decodes_them() -> None:
+    encoded = np.arange(256, dtype=np.uint8).repeat(3).reshape(16, 16, 3)
+    np.testing.assert_allclose(linear(encoded), srgb_to_linear(encoded / 255), rtol=1e-5)
+    radiance = np.full((2, 2, 3), 7.5, np.float32)
+    np.testing.assert_array_equal(linear(radiance), radiance)
 
 
 def test_a_world_without_its_coats() -> None:
