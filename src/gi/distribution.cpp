@@ -2,21 +2,23 @@
 
 namespace etendue {
 
-Distribution1D::Distribution1D(std::span<const double> weights) : cumulative_(weights.size() + 1, 0.0) {
+Distribution1D::Distribution1D(std::span<const double> weights)
+    : cumulative_(weights.size() + 1, 0.0), first_(weights.size()) {
     for (size_t i = 0; i < weights.size(); ++i) cumulative_[i + 1] = cumulative_[i] + weights[i];
     total_ = cumulative_.back();
+    for (uint32_t step = 0, cell = 0; step < size(); ++step) {
+        // A little early, as `sample` rounds.
+        const double target = step / static_cast<double>(size()) * total_ * (1 - 1e-12);
+        while (cell + 1 < size() && cumulative_[cell + 1] <= target) ++cell;
+        first_[step] = cell;
+    }
 }
 
 Distribution1D::Choice Distribution1D::sample(double u) const {
     const double target = u * total_;
-    // The last cell that begins at the target or before; as the target is below the total, it has a weight.
-    uint32_t index = 0;
-    for (auto left = static_cast<uint32_t>(size()); left > 1;) {
-        const uint32_t half = left / 2;
-        // Without a branch, which would be guessed wrong every other time.
-        index += half * (cumulative_[index + half] <= target);
-        left -= half;
-    }
+    // The first cell that ends beyond the target, which is below the total; so it has a weight.
+    uint32_t index = first_[static_cast<size_t>(u * static_cast<double>(size()))];
+    while (cumulative_[index + 1] <= target) ++index;
     const double from = cumulative_[index];
     const auto width = static_cast<float>(cumulative_[index + 1] - from);
     const float remapped = static_cast<float>(target - from) / width;

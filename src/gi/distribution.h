@@ -33,6 +33,9 @@ class Distribution1D {
   private:
     // In double: a mesh of a million triangles keeps the area of each.
     std::vector<double> cumulative_;
+    // For u in each of size() equal steps: the cell at which the search begins, which then is near its end (Chen and Asau
+    // 1974, "On Generating Random Variates from an Empirical Distribution").
+    std::vector<uint32_t> first_;
     double total_ = 0;
 };
 
@@ -75,8 +78,7 @@ class Distribution2D {
   private:
     // Single precision within a row: at 16 million cells the table is what counts.
     std::vector<float, BulkAllocator<float>> cumulative_;
-    // By row, for u in each of `width` equal steps: the cell at which the search begins, which then is near its end
-    // (Chen and Asau 1974, "On Generating Random Variates from an Empirical Distribution").
+    // By row, for u in each of `width` equal steps: the cell at which the search begins, as above.
     std::vector<uint32_t, BulkAllocator<uint32_t>> first_cell_;
     Distribution1D rows_;
     uint32_t width_ = 0, height_ = 0;
