@@ -2,8 +2,9 @@
 // share their paths, and how many lights had best be sampled at the first surface of each path.
 //
 // Some groups of pixels are estimated with and without sharing, with one light and with several. With n pixels and m lights the
-// variance is about  a + b / n + c / m:  b is of light that pixels might share, c of the lights that are sampled at what they
-// see, a of the rest. Where its product with the time is least, noise falls fastest. A third trial tells what portals take away.
+// variance is about  a + b / w(n) + c / m:  b is of light that pixels might share, whose n paths are worth w(n) of a pixel's own,
+// c of the lights that are sampled at what they see, a of the rest. Where its product with the time is least, noise falls
+// fastest. A third trial tells what portals take away.
 #pragma once
 
 #include "algorithms/path_reuse.h"

@@ -22,7 +22,7 @@ def lamps() -> tuple[_core.Scene, _core.Camera]:
     )
     rng = np.random.default_rng(6)
     parts = [(ground(3), glossy), (meshes.box(1, 0.7, 0.02).moved(x=0.2, y=0.35, z=-0.2), diffuse(0.7))]
-    for x, y, z, s in rng.uniform((-1, 0.2, -1, 0.02), (1, 0.9, 1, 0.1), (24, 4)):
+    for x, y, z, s in rng.uniform((-1, 0.2, -1, 0.02), (1, 0.9, 1, 0.3), (24, 4)):
         parts.append((meshes.quad((x, y, z), (x + s, y, z), (x + s, y, z + s), (x, y, z + s)), lamp(20 / s)))
     return scene(*parts), looking((0, 1.2, 1.4), (0, 0, 0), SIDE, fov=60)
 

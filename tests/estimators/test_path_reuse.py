@@ -49,7 +49,7 @@ def means(
             world,
             camera,
             "Pathtracer",
-            {"path_reuse": reuse, "max_cam_path_length": 6, **more},
+            {"path_reuse": reuse, "max_cam_path_length": 8, **more},
             sampler=sampler,
             seed=seed + 1000 * reuse,
         )
