@@ -16,9 +16,9 @@ Distribution1D::Distribution1D(std::span<const double> weights)
 
 Distribution1D::Choice Distribution1D::sample(double u) const {
     const double target = u * total_;
-    // The first cell that ends beyond the target, which is below the total; so it has a weight.
+    // The first cell that ends beyond the target; as that is below the total, where it is finite, the cell has a weight.
     uint32_t index = first_[static_cast<size_t>(u * static_cast<double>(size()))];
-    while (cumulative_[index + 1] <= target) ++index;
+    while (index + 1 < size() && cumulative_[index + 1] <= target) ++index;
     const double from = cumulative_[index];
     const auto width = static_cast<float>(cumulative_[index + 1] - from);
     const float remapped = static_cast<float>(target - from) / width;
