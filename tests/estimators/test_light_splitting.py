@@ -15,14 +15,14 @@ from .worlds import check_pieces, diffuse, ground, lamp, looking, scene
 SEEDS, SPP, SIDE = 48, 16, 32
 
 
-def lamps() -> tuple[_core.Scene, _core.Camera]:
+def lamps(largest: float = 0.3) -> tuple[_core.Scene, _core.Camera]:
     """A glossy floor, whose reflections of lamps both techniques find, lamps of all sizes, a card that hides some."""
     glossy = _core.Material(
         "glossy", "layered_ggx", (0.6, 0.5, 0.4), ior=1.8, roughness=0.2, absorb=0, coated=True
     )
     rng = np.random.default_rng(6)
     parts = [(ground(3), glossy), (meshes.box(1, 0.7, 0.02).moved(x=0.2, y=0.35, z=-0.2), diffuse(0.7))]
-    for x, y, z, s in rng.uniform((-1, 0.2, -1, 0.02), (1, 0.9, 1, 0.3), (24, 4)):
+    for x, y, z, s in rng.uniform((-1, 0.2, -1, 0.02), (1, 0.9, 1, largest), (24, 4)):
         parts.append((meshes.quad((x, y, z), (x + s, y, z), (x + s, y, z + s), (x, y, z + s)), lamp(20 / s)))
     return scene(*parts), looking((0, 1.2, 1.4), (0, 0, 0), SIDE, fov=60)
 
@@ -77,7 +77,7 @@ def test_noise_falls() -> None:
 
 
 def test_lights_are_split_where_it_pays() -> None:
-    """Not where there is no light to sample, nor where most noise is of what paths find further on."""
+    """Not where there is no light to sample, most noise is of what paths find further on, or little is gained."""
     dark = scene((ground(), diffuse()))
     assert _core.Renderer(dark, looking((0, 1, 1), (0, 0, 0)), "Pathtracer").light_samples == 1
     hidden = meshes.quad((-0.5, 0.3, -0.5), (0.5, 0.3, -0.5), (0.5, 0.3, 0.5), (-0.5, 0.3, 0.5))
@@ -86,6 +86,9 @@ def test_lights_are_split_where_it_pays() -> None:
     assert _core.Renderer(closed, above, "Pathtracer", {"path_reuse": False}).light_samples == 1
     assert _core.Renderer(*lamps(), "Pathtracer", {"max_cam_path_length": 1}).light_samples == 1
     assert _core.Renderer(*lamps(), "NaivePathtracer").light_samples == 1
+    little = {"path_reuse": False, "max_cam_path_length": 4}
+    assert _core.Renderer(*lamps(0.1), "Pathtracer", little).light_samples == 1
+    assert _core.Renderer(*lamps(), "Pathtracer", little).light_samples > 1
 
 
 @pytest.mark.parametrize("sampler", _core.samplers())
